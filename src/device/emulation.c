@@ -1,7 +1,10 @@
 #include "device/emulation.h"
 
 #include "base/mem.h"
+#include "base/unreachable.h"
 #include "device/wave_internal.h"
+
+#include <math.h>
 
 enum { USUAL_WAVE = 4096 };
 
@@ -69,6 +72,25 @@ static bool run_wave(const struct emulation *emulation, struct wave *wave, struc
     return true;
 }
 
+static bool has_nan(const double *numbers, size_t count) {
+    bool has = false;
+    for (size_t i = 0; i < count; i++)
+        has = has || isnan(numbers[i]);
+    return has;
+}
+
+/* NaN has other bits on other machines, so no record has one. */
+static void check_numbers(const struct path_pixel *pixel) {
+    const float *features = pixel->features[0];
+    bool has = has_nan(&pixel->sums[0].r, 6) || has_nan(pixel->weights, 2) || has_nan(pixel->divisors, 2) ||
+               has_nan(&pixel->squares.r, 3) || has_nan(&pixel->light[0].r, (size_t)3 * PATH_LIGHT_GROUPS) ||
+               isnan(pixel->seen_through) || isnan(pixel->line);
+    for (int i = 0; i < 2 * PATH_FEATURES; i++)
+        has = has || isnan(features[i]);
+    if (has)
+        UNREACHABLE("NaN in a record");
+}
+
 static bool make(void *context, const struct path_order *order, struct path_pixel *pixels, struct path_counts *counts) {
     const struct emulation *emulation = context;
     const struct path_scene *scene = emulation->scene;
@@ -89,6 +111,8 @@ static bool make(void *context, const struct path_order *order, struct path_pixe
     }
     if (goes_on && path_scene_met_fault(scene))
         wave_leave_pixels(order, pixels);
+    for (uint64_t i = 0; goes_on && i < path_order_pixels(order); i++)
+        check_numbers(&pixels[i]);
     if (lane) {
         const struct path_counts made = path_lane_counts(lane);
         path_counts_add(counts, &made);
