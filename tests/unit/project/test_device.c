@@ -45,7 +45,8 @@ TEST(a_device_process_gives_the_bytes_of_threads_in_twenty_scenes) {
 }
 
 TEST_LONG(a_device_process_gives_the_bytes_of_threads_in_every_scene) {
-    compare("data/[0-9]*.lua data/[lmprs][ieowy][^ao]*.lua data/csg/*.lua data/functions/*.lua data/library/show_*.lua data/gallery/*.lua",
+    compare("data/[0-9]*.lua data/[lmprs][ieowy][^ao]*.lua data/csg/*.lua data/functions/*.lua data/library/show_*.lua "
+            "data/gallery/*.lua",
             "--integrator path --size 24x18 --spp 2");
 }
 
@@ -128,6 +129,34 @@ TEST(the_processor_goes_on_when_the_device_process_is_killed) {
 
 TEST_LONG(the_processor_goes_on_whenever_the_device_process_is_killed) {
     kill_at("$(seq 0 .002 .4)");
+}
+
+/* The program itself, or its first child, the render process: what was there before stays, and no process does. */
+static void kill_other_at(const char *which, const char *sleeps) {
+    char line[2048];
+    (void)snprintf(
+        line, sizeof line,
+        DEVICE
+        "$gray -q -o whole.pfm scene.lua && cp whole.pfm killed.pfm && for seconds in %s; do "
+        "$gray -q --device $other -o killed.pfm --force scene.lua 2>killed.txt & process=$!; "
+        "await \"[ \\$(pgrep -P $process | wc -l) -ge 2 ]\"; all=\"$process $(pgrep -P $process)\"; "
+        "set -- $all; sleep $seconds; kill -9 %s 2>killed.txt; wait $process; cmp whole.pfm killed.pfm || exit 1; "
+        "for one in $all; do await \"! kill -0 $one 2>killed.txt\"; done; done; "
+        "[ $(ls | wc -l) = 5 ] || { ls; exit 2; }",
+        sleeps, which);
+    test_write_file(test_path("scene.lua"), room, sizeof room - 1);
+    test_need_tools("pgrep");
+    test_shell(line, 0, "");
+}
+
+TEST(what_is_left_of_a_run_with_a_device_whose_processes_are_killed_is_the_old_picture) {
+    kill_other_at("$1", "0 .05");
+    kill_other_at("$2", "0 .05");
+}
+
+TEST_LONG(whenever_a_process_of_a_run_with_a_device_is_killed_the_old_picture_is_left) {
+    kill_other_at("$1", "$(seq 0 .002 .4)");
+    kill_other_at("$2", "$(seq 0 .002 .4)");
 }
 
 TEST(what_device_there_is_is_an_option_or_in_the_environment) {
