@@ -17,7 +17,7 @@ local glyphs = {
     A = '4;0,0 2,6 4,0;.7,2 3.3,2', B = '3.4;0,0 0,6;~0,6 1,6 2.6,5.8 3,4.6 2.4,3.4 0,3.2;~0,3.2 1,3.2 3,2.9 3.5,1.6 2.6,.2 0,0',
     C = '4;~4,5.2 2.6,6 .8,5.2 0,3 .8,.8 2.6,0 4,.8', D = '4;0,0 0,6;~0,6 2,5.8 3.7,4.6 4,3 3.7,1.4 2,.2 0,0',
     E = '3.2;3.2,6 0,6 0,0 3.2,0;0,3.1 2.6,3.1', F = '3.2;3.2,6 0,6 0,0;0,3.1 2.6,3.1',
-    G = '4;~4,5.2 2.6,6 .8,5.2 0,3 .8,.8 2.4,0 4,.9;4,.9 4,2.8 2.4,2.8', H = '3.8;0,0 0,6;3.8,0 3.8,6;0,3.1 3.8,3.1',
+    G = '4;~4,5.2 2.6,6 .8,5.2 0,3 .8,.8 2.3,0 3.5,.5 4,1.7;4,1.7 4,2.8 2.4,2.8', H = '3.8;0,0 0,6;3.8,0 3.8,6;0,3.1 3.8,3.1',
     I = '0;0,0 0,6', J = '2.6;~2.6,6 2.6,4 2.6,1.6 1.6,.1 .4,.3 0,1.2', K = '3.6;0,0 0,6;3.4,6 0,2.4;1.3,3.7 3.6,0',
     L = '3;0,6 0,0 3,0', M = '4.6;0,0 0,6 2.3,1.6 4.6,6 4.6,0', N = '4;0,0 0,6 4,0 4,6',
     O = '4.4;~2.2,6 .7,5.3 0,3 .7,.7 2.2,0 3.7,.7 4.4,3 3.7,5.3 2.2,6', P = '3.4;0,0 0,6;~0,6 1.4,6 3,5.6 3.5,4.4 3,3.2 1.4,2.8 0,2.8',
@@ -110,6 +110,22 @@ for letter, base, accent in ('ÀA` ÁA´ ÂAˆ ÃA˜ ÄA¨ ÅA˚ ÇC¸ ÈE` ÉE�
     glyphs[letter] = width .. ';' .. moved(base, 1, (width - own) / 2, 0) .. ';' .. moved(accent, 1, (width - above) / 2, rise)
 end
 
+local STEPS <const> = 16 -- pieces between two points
+
+--- The curve through the points; its ends bend half as much as the pieces beside them.
+local function smooth(points, ring)
+    if ring or #points < 3 then
+        local curve = lathe.spline(points, STEPS, ring)
+        if ring then curve[#curve + 1] = curve[1] end
+        return curve
+    end
+    local function beyond(p, q, r) return { 2.5 * p[1] - 2 * q[1] + r[1] / 2, 2.5 * p[2] - 2 * q[2] + r[2] / 2 } end
+    local n = #points
+    local longer = table.move(points, 1, n, 2, { beyond(points[1], points[2], points[3]) })
+    longer[n + 2] = beyond(points[n], points[n - 1], points[n - 2])
+    return table.move(lathe.spline(longer, STEPS), STEPS + 1, n * STEPS + 1, 1, {})
+end
+
 local cache = {}
 
 local function glyph(letter)
@@ -126,8 +142,7 @@ local function glyph(letter)
             local first, last = points[1], points[#points]
             local ring = #points > 3 and first[1] == last[1] and first[2] == last[2]
             if ring then points[#points] = nil end
-            points = lathe.spline(points, 6, ring)
-            if ring then points[#points + 1] = points[1] end
+            points = smooth(points, ring)
         end
         made.strokes[#made.strokes + 1] = points
     end

@@ -24,7 +24,7 @@ scene:add_child(gr.plane{material = sheet, normal = {0, 0, 1}})
 -- a line of text, scaled to the width of the column; y is its lower edge, the result its height
 local left, width = -3.3, 6.6
 local function line(word, y, depth, material, weight)
-    local verts, normals, faces, corners = text.mesh(word, {size = 4, weight = weight, depth = 1, bevel = .07, steps = 4})
+    local verts, normals, faces, corners = text.mesh(word, {size = 4, weight = weight, depth = 1, bevel = .07, steps = 4, tolerance = .0015})
     local low, high = {math.huge, math.huge}, {-math.huge, -math.huge}
     for _, v in ipairs(verts) do
         for k = 1, 2 do low[k], high[k] = math.min(low[k], v[k]), math.max(high[k], v[k]) end
