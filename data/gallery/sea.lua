@@ -1,6 +1,6 @@
 -- TITLE: A buoy at sunset
 -- OPTIONS: --size 400x250 --spp 12
--- LARGE: --spp 64
+-- LARGE: --spp 80
 -- A low sun draws its road over the swell. The water is a height field of Gerstner-like waves and ripples; foam lies on the
 -- crests; the buoy has rust, a cage, a lamp, and a gull. With --frames 96 --loop the waves pass.
 -- LOOP: --frames 96 --fps 24 --loop --size 800x500 --spp 16
@@ -37,6 +37,7 @@ local function field(size, middle, columns, sink)
 end
 field(26, 19, cells, 0)
 field(220, 238, cells, .02)
+field(1900, 2120, cells, .04)                     -- to the horizon
 scene:add_child(gr.plane{material = water(1), normal = {0, 1, 0}, distance = -.35})
 
 -- the buoy
@@ -63,7 +64,7 @@ end
 buoy:add_child(gr.torus(iron, .40, .016):translate(0, 1.66, 0))
 buoy:add_child(gr.sphere{material = gr.material{kd = {0, 0, 0}, emission = {3.4, 1.25, .32}}, centre = {0, 1.60, 0}, radius = .11})
 buoy:add_child(gr.cone{material = iron, from = {0, 1.95, 0}, to = {0, 1.78, 0}, radius = .23})
-scene:add_child(buoy:rotate('z', 11 + 3 * math.sin(2 * math.pi * clock)):rotate('x', -7 + 2 * math.sin(4 * math.pi * clock)):translate(-1.75, height(-1.75, -4) - .10, -4))
+scene:add_child(buoy:rotate('z', 11 + 3 * math.sin(2 * math.pi * clock)):rotate('x', -7 + 2 * math.sin(4 * math.pi * clock)):translate(-1.75, height(-1.75, -4) - .20, -4))
 
 -- gulls
 local feathers = gr.openpbr_material{base_color = {.35, .33, .33}, specular_weight = .1}
@@ -76,7 +77,7 @@ local function gull(x, y, z, size, flap, turn)
     end
     scene:add_child(bird:scale(size, size, size):rotate('z', 12):rotate('y', turn):translate(x, y, z))
 end
-gull(1.15, 2.55, -7, .40, .75, 55) gull(2.3, 3.0, -11, .42, .3, 70) gull(-.1, 3.3, -14, .42, -.2, 62)
+gull(1.15, 2.55, -7, .40, .75, 55) gull(2.75, 3.35, -11, .40, .55, 34) gull(-.1, 3.3, -14, .42, .9, 24)
 
 -- the sky: a glow around the sun, its disc, and thin clouds that are lit from below
 local function dome(d)
@@ -87,9 +88,9 @@ local function dome(d)
     local veil = gr.noise(q.x * .35, 2, q.z * 1.1) + .5 * gr.noise(q.x * .9, 3, q.z * 2.6) + .25 * gr.noise(q.x * 2.1, 4, q.z * 5.5)
     local cloud = gr.smoothstep(-.1, .55, veil) * gr.smoothstep(.015, .10, up)
     local lit = gr.mix(gr.vec(.26, .16, .15), gr.vec(2.4, .95, .30), toward ^ 9)
-    return gr.mix(air, lit, .85 * cloud) + gr.vec(40, 22, 8) * gr.smoothstep(.99993, .99995, toward)
+    return gr.mix(air, lit, .85 * cloud) + gr.vec(40, 22, 8) * gr.smoothstep(.99989, .99997, toward)
 end
 local sky = gr.sky_function(dome)
 gr.render{node = scene, file = 'sea.png', width = 1600, height = 1000, eye = {0, 1.25, 4.4}, target = {-.15, 1.12, -4}, fov = 33,
-    integrator = 'path', denoise = true, tone = 'filmic', exposure = -.25, clamp = 20, max_depth = 6, background = sky, bloom = .10, vignette = .15,
+    integrator = 'path', denoise = true, tone = 'filmic', exposure = -.25, resolve = 'bright', clamp = 20, max_depth = 6, background = sky, bloom = .10, vignette = .15,
     lights = {gr.sky_light{sky = sky}, gr.sun_light{sun = sun, colour = {24, 11.5, 3.8}}}}

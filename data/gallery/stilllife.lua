@@ -1,6 +1,6 @@
 -- TITLE: Still life with lemons
 -- OPTIONS: --size 400x250 --spp 10
--- LARGE: --spp 64
+-- LARGE: --spp 96
 -- A window on the left, a dark wall, and what Dutch painters laid on a table: a white cloth with folds, pewter, a glass of
 -- wine, lemons, grapes and bread. Grapes and lemons scatter light inside.
 local random, patterns = require 'random', require 'patterns'
@@ -19,18 +19,18 @@ scene:add_child(gr.plane{material = wall, normal = {0, 0, 1}, distance = -4.4})
 local linen = gr.openpbr_material{base_color = function(p)
         local weave = gr.noise(p.x * 420, 0, p.z * 60) + gr.noise(p.x * 60, 1, p.z * 420)
         local seam = gr.smoothstep(.0022, .0012, gr.max(p.z - .965, .965 - p.z)) * gr.smoothstep(.25, .35, p.x * 150 % 1)
-        return gr.vec(.78, .75, .68) * (1 + .05 * weave) * (1 - .3 * seam)
+        return gr.vec(.78, .75, .68) * (1 + .05 * weave) * (1 - .14 * seam)
     end, specular_weight = .2, specular_roughness = .7, fuzz_weight = .25, fuzz_color = {.9, .88, .84}}
-local function fold(x, z)                          -- height over the table; z from the back, 0 to 4.4
+local function fold(x, z)                          -- height over the table; z from the back, 0 to 4.9
     local wave = .10 * math.sin(3.1 * x + 1.1 * gr.noise(x, 3, z * .4) * 3) + .07 * math.sin(7.3 * x + 2 * gr.noise(x * .8, 5, z * .3))
     local crest = gr.max(0, gr.noise(x * 1.3 - z * .8, 7, z * .35 + x * .2)) ^ 1.5
     return .03 + .30 * crest * gr.smoothstep(.1, .9, z) + (wave + .17) * gr.smoothstep(2.2, 3.8, z) + .01 * gr.noise(x * 6, 2, z * 6)
 end
 scene:add_child(gr.height_field{material = linen, columns = 560, rows = 560, smooth = true, open = true, f = function(p)
-    local x, z = p.x * 5.4, p.z * 4.4
+    local x, z = p.x * 5.4, p.z * 4.9
     local over = gr.max(0, z - 3.85)
     return (fold(x, z) - .5 * over * over * 5) / 5.4
-end}:translate(-.5, 0, 0):scale(5.4, 5.4, 4.4):rotate('y', 7):translate(.75, 0, -1.25))
+end}:translate(-.5, 0, 0):scale(5.4, 5.4, 4.9):rotate('y', 7):translate(.75, 0, -1.25))
 
 -- a jug of pewter
 local pewter = gr.metal_material{metal = 'nickel', roughness = function(p) return .22 + .16 * gr.turbulence(p * 2.5, 4) end,
@@ -56,13 +56,13 @@ local peel = gr.openpbr_material{subsurface_weight = .6, subsurface_color = {.90
 local flesh = gr.openpbr_material{subsurface_weight = .2, subsurface_color = {.92, .76, .26}, subsurface_radius = .05, specular_roughness = .15, coat_weight = .4,
     base_color = function(p)
         local r = (p.x * p.x + p.z * p.z) ^ .5
-        local a = gr.noise(p.x * 2, 0, p.z * 2) * .05 + .5
+        local a = math.atan(p.z, p.x)                    -- juice sacs point to the middle
         local sector = 1
         for k = 0, 4 do
             local c, s = math.cos(math.pi * k / 5 + .2), math.sin(math.pi * k / 5 + .2)
-            sector = gr.min(sector, gr.smoothstep(.010, .026, gr.max(p.x * s - p.z * c, p.z * c - p.x * s)))
+            sector = gr.min(sector, gr.smoothstep(.004, .016 + .01 * gr.noise(p * 9), gr.max(p.x * s - p.z * c, p.z * c - p.x * s)))
         end
-        local pulp = gr.mix(gr.vec(.82, .55, .10), gr.vec(.55, .32, .02), .5 + .5 * gr.noise(p.x * 16, a, p.z * 16))
+        local pulp = gr.mix(gr.vec(.82, .55, .10), gr.vec(.55, .32, .02), .5 + .45 * gr.noise(r * 9, math.sin(a) * 13, math.cos(a) * 13) + .2 * gr.noise(p * 40))
         return gr.mix(gr.vec(.88, .84, .62), gr.mix(gr.vec(.88, .84, .62), pulp, sector), gr.smoothstep(.425, .40, r) * gr.smoothstep(.03, .06, r))
     end}
 local lemon = {{0, -.68}, {.05, -.67}, {.10, -.61}, {.24, -.52}, {.40, -.30}, {.465, 0}, {.42, .27}, {.26, .50}, {.13, .59}, {.10, .64}, {.06, .665}, {0, .67}}
@@ -93,7 +93,7 @@ for _ = 1, 2600 do
         scene:add_child(gr.ellipsoid{material = kinds[dice:number() < .5 and 1 or (dice:number() < .5 and 2 or 3)], centre = c, radii = {radius, radius * dice:range(1.0, 1.12), radius}})
     end
 end
-scene:add_child(gr.sweep(stalk, {{-.55, .75, 1.0}, {-.25, .62, .85}, {.0, .40, .62}, {.12, .34, .45}}, {.022, .026, .03, .045}))
+scene:add_child(gr.sweep(stalk, {{-1.05, .34, 1.05}, {-.72, .50, 1.06}, {-.40, .36, 1.02}, {-.12, .15, .98}, {-.06, .13, .97}}, {.022, .026, .028, .034, .042}))
 
 -- bread, and a knife over the edge
 local crust = gr.openpbr_material{specular_roughness = .55, specular_weight = .5, base_color = function(p)
