@@ -2,6 +2,8 @@
 # Compiles the files of src/device/sources.list for a card, without one, and checks what the promise of equal bytes needs:
 #   tools/device_scan.sh calls    every file compiles for NVIDIA's cards; the kernels named there reach nothing but the
 #                                 listed files, and each of these
+#   tools/device_scan.sh shared   and compiles what the kernels reach, from the same bitcode, for this processor (x86-64):
+#                                 kernels.so, where bitcode_thread and bitcode_threads say which thread of the card runs
 #   tools/device_scan.sh          also for AMD's cards; in the PTX, every operation on floats and doubles rounds to
 #                                 nearest, none is fused, approximate or flushes denormals, minima and maxima keep the
 #                                 sign of zero, and frames of functions that every ray passes are small
@@ -30,7 +32,7 @@ export wanted FLAGS="-std=gnu11 -ffp-contract=off -fno-fast-math -fno-math-errno
 # For NVIDIA's cards only what is newer than what was made of it.
 echo "$sources" | OUT=$out xargs -P "$(nproc)" -n 1 sh -c '
     object=$OUT/$(echo "$1" | tr / _).bc
-    [ "$wanted" = calls ] || clang --target=amdgcn-amd-amdhsa -nogpulib $FLAGS -fsyntax-only "$1" || exit 255
+    [ "$wanted" != all ] || clang --target=amdgcn-amd-amdhsa -nogpulib $FLAGS -fsyntax-only "$1" || exit 255
     [ "$object" -nt "$1" ] && [ -z "$(find src -name "*.h" -newer "$object")" ] && exit 0
     clang --target=nvptx64-nvidia-cuda -march=sm_70 -O2 -mllvm -inline-threshold=45 $FLAGS -emit-llvm -c "$1" -o "$object"
 ' sh || { echo "device_scan.sh: a file does not compile for a card" >&2; exit 1; }
@@ -59,6 +61,23 @@ done
 [ "$bad" = 0 ] || exit 1
 echo "$(echo "$objects" | wc -l) files, $(grep -c -i ' t ' reached.txt) functions"
 [ "$wanted" = calls ] && exit 0
+if [ "$wanted" = shared ]; then
+    [ "$(uname -m)" = x86_64 ] || { echo "device_scan.sh: nothing was checked: this is no x86-64"; exit 0; }
+    llvm-dis"$suffix" reached.bc -o - | sed -e 's/^target triple.*/target triple = "x86_64-unknown-linux-gnu"/' \
+        -e 's/^target datalayout.*/target datalayout = "e-m:e-p270:32:32-p271:32:32-p272:64:64-i64:64-f80:128-n8:16:32:64-S128"/' \
+        -e 's/"target-cpu"="[^"]*"//; s/"target-features"="[^"]*"//' \
+        -e 's/@llvm\.nvvm\.read\.ptx\.sreg\.\([a-z]*\)\.x/@bitcode_\1/g' >shared.ll || exit 1
+    cat >shared.c <<'END'
+unsigned bitcode_thread, bitcode_threads;
+unsigned bitcode_tid(void) { return bitcode_thread; }
+unsigned bitcode_ctaid(void) { return 0; }
+unsigned bitcode_ntid(void) { return bitcode_threads; }
+unsigned bitcode_nctaid(void) { return 1; }
+END
+    llc"$suffix" -O1 -relocation-model=pic -filetype=obj shared.ll -o shared.o &&
+        clang -shared -fPIC -O1 shared.c shared.o -lm -o kernels.so && echo kernels.so
+    exit
+fi
 
 # clang's C of that age has no word for a kernel: it is a note beside the function.
 llvm-dis"$suffix" reached.bc -o - | awk '

@@ -170,10 +170,6 @@ TEST(what_device_there_is_is_an_option_or_in_the_environment) {
     test_shell("$gray --device card scene.lua 2>&1", 2, "--device");
 }
 
-TEST(what_a_ray_touches_compiles_for_cards_and_calls_nothing_else) {
-    scan("calls", " functions");
-}
-
 TEST_LONG(every_operation_for_cards_is_rounded_and_none_is_fused) {
     scan("", " operations are rounded to nearest");
 }
