@@ -8,13 +8,15 @@ local scene = gr.node 'town'
 local dice = random.new(29)
 local function glow(r, g, b) return gr.material{kd = {0, 0, 0}, emission = {r, g, b}} end
 
--- a front: windows of .62 x 1.0 in cells of 1.1 x 1.7, two thirds of them dark; shop windows at the bottom
-local function front(colour, warm)
+-- a front: windows of .62 x 1.0 in cells of 1.1 x 1.7, two thirds of them dark; shop windows at the bottom.
+-- Corners of houses are edges of cells; the tower has four columns of windows, which end below the clock
+local function front(colour, warm, tower)
     local function window(p, s)
-        local along = gr.where(gr.max(s.normal.x, -s.normal.x) - .5, p.z, p.x)
-        local u, v = along / 1.1, p.y / 1.7
-        local fu, fv, cell = u % 1, v % 1, gr.vec(u // 1, v // 1, gr.where(gr.max(s.normal.x, -s.normal.x) - .5, p.x // 1, p.z // 1))
+        local side = gr.max(s.normal.x, -s.normal.x) - .5
+        local u, v = gr.where(side, p.z, tower and p.x + .2 or gr.max(p.x, -p.x) + .3) / 1.1, p.y / 1.7
+        local fu, fv, cell = u % 1, v % 1, gr.vec(u // 1, v // 1, tower and .5 or gr.where(side, p.x // 1, p.z // 1))
         local pane = gr.smoothstep(.20, .215, fu) * gr.smoothstep(.80, .785, fu) * gr.smoothstep(.22, .235, fv) * gr.smoothstep(.86, .845, fv)
+        if tower then pane = pane * gr.step(gr.max(u, -u), 2) * gr.step(v, 8) * gr.where(side, 0, 1) end
         local bar = gr.smoothstep(.018, .012, gr.max(fu - .5, .5 - fu)) + gr.smoothstep(.014, .009, gr.max(fv - .62, .62 - fv))
         return pane * (1 - gr.clamp(bar, 0, 1)) * gr.smoothstep(.6, .3, gr.max(s.normal.y, -s.normal.y)), fu, fv, cell
     end
@@ -49,7 +51,8 @@ local function house(x0, x1, z0, z1, height, kind)
     for floor = 2, math.floor(height / 1.7) - 1 do ledge(1.7 * floor + .22, .05, .06) end
     if kind % 2 == 1 then                          -- a mansard roof with dormers, and chimneys
         local w = (x1 - x0) / 2
-        scene:add_child(gr.prism{material = slate, outline = {{-w, 0}, {w, 0}, {w - .9, 1.9}, {-w + .9, 1.9}}, from = -z1, to = -z0}:rotate('x', -90):scale(1, 1, -1):translate((x0 + x1) / 2, height + .2, 0))
+        scene:add_child(gr.prism{material = slate, outline = {{-w, 0}, {w, 0}, {w - .9, 1.9}, {-w + .9, 1.9}}, from = -z1, to = -z0}
+            :rotate('x', -90):scale(1, 1, -1):translate((x0 + x1) / 2, height + .2, 0))
     end
     for _ = 1, 2 do
         local x, z = dice:range(x0 + .6, x1 - .6), dice:range(z0 + .5, z1 - .5)
@@ -57,7 +60,7 @@ local function house(x0, x1, z0, z1, height, kind)
     end
 end
 for side = -1, 1, 2 do
-    local z = 6
+    local z = 5.5
     while z > -95 do
         local depth, height = 1.1 * math.floor(dice:range(5, 9.5)), 1.7 * math.floor(dice:range(5, 9.4))
         if side > 0 then house(5.2, 5.2 + 8, z - depth, z - .04, height, math.ceil(dice:range(0, 5))) else house(-5.2 - 8, -5.2, z - depth, z - .04, height, math.ceil(dice:range(0, 5))) end
@@ -65,19 +68,25 @@ for side = -1, 1, 2 do
     end
 end
 -- the tower at the end, with a clock
-scene:add_child(gr.box(fronts[2], {-3.2, 0, -112}, {2.8, 19, -104}))
+scene:add_child(gr.box(front(gr.vec(.20, .19, .19), 1.9, true), {-3.2, 0, -112}, {2.8, 19, -104}))
 scene:add_child(gr.box{material = stone, min = {-3.5, 19, -112.3}, max = {3.1, 19.6, -103.7}})
 scene:add_child(gr.cone{material = slate, from = {-.2, 19.6, -108}, to = {-.2, 31, -108}, from_radius = 3.6, radius = .05})
 scene:add_child(gr.cylinder{material = glow(2.6, 2.1, 1.2), from = {-.2, 16.5, -104}, to = {-.2, 16.5, -103.85}, radius = 1.3})
+for _, hand in ipairs{{155, .75, .13}, {60, 1.1, .09}} do     -- ten past five
+    local a = math.rad(hand[1])
+    scene:add_child(gr.cylinder{material = iron, from = {-.2, 16.5, -103.8}, to = {-.2 + hand[2] * math.sin(a), 16.5 + hand[2] * math.cos(a), -103.8}, radius = hand[3]})
+end
 
--- the wet street, kerbs and pavements
+-- the wet street, kerbs and pavements; far away puddles are more ragged, and the middle of the street is higher and dry
+local function wet(p)
+    local n, far = gr.noise(p.x * .32, 2, p.z * .13) + .4 * gr.noise(p.x * 1.1, 5, p.z * .6), gr.smoothstep(1, -7, p.z)
+    n = n + gr.mix(.08, .3, far) * gr.noise(p.x * 2.7, 8, p.z * 1.9) - .5 * far * gr.smoothstep(1.7, .4, gr.max(p.x, -p.x))
+    return gr.smoothstep(-.14, .24, n)
+end
 local street = gr.openpbr_material{specular_ior = 1.33,
     base_color = function(p) return gr.vec(.030, .031, .034) * (1 + .5 * gr.noise(p * 14)) end,
-    specular_roughness = function(p) return gr.mix(.26, .025, gr.smoothstep(-.12, .22, gr.noise(p.x * .32, 2, p.z * .13) + .4 * gr.noise(p.x * 1.1, 5, p.z * .6))) end,
-    geometry_normal = gr.bump(function(p)
-        local dry = gr.smoothstep(.22, -.12, gr.noise(p.x * .32, 2, p.z * .13) + .4 * gr.noise(p.x * 1.1, 5, p.z * .6))
-        return dry * gr.noise(p * 9) + .25 * gr.noise(p * 2)
-    end, .006)}
+    specular_roughness = function(p) return gr.mix(.26, .025, wet(p)) end,
+    geometry_normal = gr.bump(function(p) return (1 - wet(p)) * gr.noise(p * 9) + .25 * gr.noise(p * 2) end, .006)}
 scene:add_child(gr.plane{material = street, normal = {0, 1, 0}})
 for side = -1, 1, 2 do
     scene:add_child(gr.box{material = street, min = {side * 4.35 - .85, -.1, -100}, max = {side * 4.35 + .85, .12, 8}, edge = .03})
@@ -89,17 +98,25 @@ for side = -1, 1, 2 do
         scene:add_child(gr.cone{material = iron, from = {x, 4.72, z}, to = {x, 4.5, z}, radius = .24})
     end
 end
--- parked cars: two rounded boxes, wheels, tail lamps
+-- parked cars: a body and a cabin with bent sides, wheels, a bumper, tail lamps
 local function car(x, z, colour)
     local paint = gr.openpbr_material{base_color = colour, coat_weight = 1, specular_roughness = .3}
     local glass = gr.openpbr_material{base_color = {.01, .01, .012}, specular_roughness = .03}
-    scene:add_child(gr.box{material = paint, min = {x - .82, .28, z - 2}, max = {x + .82, .86, z + 2}, edge = .2})
-    scene:add_child(gr.box{material = glass, min = {x - .68, .6, z - 1.0}, max = {x + .68, 1.36, z + 1.55}, edge = .28})
-    scene:add_child(gr.box{material = paint, min = {x - .62, 1.3, z - .7}, max = {x + .62, 1.385, z + 1.2}, edge = .04})
-    for _, w in ipairs{{-.76, -1.25}, {.76, -1.25}, {-.76, 1.25}, {.76, 1.25}} do
-        scene:add_child(gr.cylinder{material = iron, from = {x + w[1] - .11, .31, z + w[2]}, to = {x + w[1] + .11, .31, z + w[2]}, radius = .31, edge = .05})
+    -- side views, as pairs of height and length, become prisms across the street
+    local function across(material, half, edge, outline)
+        scene:add_child(gr.prism{material = material, outline = outline, from = -half, to = half, edge = edge}:rotate('z', 90):translate(x, 0, z))
     end
-    for s = -1, 1, 2 do scene:add_child(gr.box{material = glow(.9, .02, .012), min = {x + .58 * s - .16, .58, z + 1.95}, max = {x + .58 * s + .16, .70, z + 2.01}}) end
+    across(paint, .80, .1, {{.24, -2.0}, {.62, -2.05}, {.80, -1.9}, {.90, -.9}, {.94, 1.2}, {.88, 1.95}, {.55, 2.05}, {.24, 1.98}})
+    across(glass, .66, .1, {{.8, -1.2}, {1.33, -.45}, {1.38, .3}, {1.32, 1.05}, {.8, 1.65}})
+    across(paint, .60, .015, {{1.32, -.42}, {1.40, .3}, {1.33, 1.0}, {1.29, 1.0}, {1.29, -.42}})
+    scene:add_child(gr.box{material = iron, min = {x - .78, .30, z + 1.9}, max = {x + .78, .44, z + 2.12}, edge = .05})
+    scene:add_child(gr.box{material = stone, min = {x - .24, .54, z + 1.9}, max = {x + .24, .65, z + 2.07}, edge = .01})
+    for _, w in ipairs{{-.69, -1.25}, {.69, -1.25}, {-.69, 1.25}, {.69, 1.25}} do
+        scene:add_child(gr.cylinder{material = iron, from = {x + w[1] - .12, .31, z + w[2]}, to = {x + w[1] + .12, .31, z + w[2]}, radius = .31, edge = .05})
+    end
+    for s = -1, 1, 2 do
+        scene:add_child(gr.box{material = glow(.9, .02, .012), min = {x + .60 * s - .11, .66, z + 1.9}, max = {x + .60 * s + .11, .74, z + 2.045}, edge = .03})
+    end
 end
 car(2.55, -4.2, {.25, .02, .02}) car(2.6, -10.2, {.03, .05, .12}) car(2.55, -21, {.3, .3, .3}) car(-2.6, -9, {.02, .08, .06}) car(-2.55, -15.4, {.35, .33, .3})
 

@@ -1,6 +1,6 @@
 -- TITLE: The lighthouse
 -- OPTIONS: --size 300x375 --spp 4
--- LARGE: --spp 96
+-- LARGE: --spp 88
 -- Fog over a rock in the sea, at dusk: the lens of the lamp sends two beams into it, and the windows of the keeper glow. The fog
 -- is a medium that ends above the lamp, and all light in it is scattered light.
 local random = require 'random'
@@ -64,9 +64,10 @@ scene:add_child(gr.sphere{material = iron, centre = {0, top + 2.62, 0}, radius =
 scene:add_child(gr.cylinder{material = iron, from = {0, top + 2.6, 0}, to = {0, top + 3.3, 0}, radius = .014})
 local lamp = {0, top + 1.05, 0}
 scene:add_child(gr.sphere{material = glow(46, 34, 19), centre = lamp, radius = .23})
-for k, w in ipairs{{3.6, 20}, {5.6, -35}, {8.7, 12}} do   -- windows of the stair
-    local r, a = 1.5 - .083 * (w[1] - base), math.rad(90 + w[2])
-    scene:add_child(gr.box{material = glow(3.2, 1.7, .6), min = {-.13, -.22, -.1}, max = {.13, .22, .03}}:rotate('y', w[2] * -1):translate(r * math.cos(a) * .98, w[1], r * math.sin(a) * .98))
+local function radius(y) return y < 4.4 and 1.5 - .122 * (y - 2.1) or y < 7 and 1.22 - .077 * (y - 4.4) or 1.02 - .039 * (y - 7) end
+for _, w in ipairs{{3.6, 20}, {5.6, -35}, {8.7, 12}} do   -- windows of the stair
+    local r, a = radius(w[1]), math.rad(90 + w[2])
+    scene:add_child(gr.box{material = glow(3.2, 1.7, .6), min = {-.13, -.22, -.1}, max = {.13, .22, .04}}:rotate('y', -w[2]):translate(r * math.cos(a), w[1], r * math.sin(a)))
 end
 
 -- the keeper's house, and steps to a landing

@@ -6,14 +6,15 @@ local sdf, random = require 'sdf', require 'random'
 local scene = gr.node 'garden'
 local dice = random.new(12)
 
--- the dome: a wall of 14 cm along a gyroid, in a shell of a ball, on a ring
+-- the dome: a wall of 14 cm along a gyroid, in a shell of a ball, on a ring; the door has an arch
 local plaster = gr.openpbr_material{specular_roughness = .55, specular_weight = .4,
     base_color = function(p) return gr.vec(.84, .81, .76) * (1 - .10 * gr.turbulence(p * 1.4, 3)) end}
 local gyroid = sdf.intersection(sdf.gyroid(1.5, .15), sdf.shell(sdf.sphere(2.4), .46))
-local dome = sdf.difference(gyroid, sdf.box{.48, 1.05, 4})
+local door = sdf.union(sdf.box{.52, .86, 4}, sdf.translate(sdf.rotate(sdf.cylinder(.52, 4), 'x', 90), {0, .86, 0}))
+local dome = sdf.difference(gyroid, door)
 scene:add_child(gr.implicit{material = plaster, f = dome, bounds = {{-2.7, 0, -2.7}, {2.7, 2.7, 2.7}}})
-scene:add_child(gr.difference(gr.cylinder{material = plaster, from = {0, -.2, 0}, to = {0, .09, 0}, radius = 2.72, edge = .03}, gr.cylinder{material = plaster, from = {0, .0, 0}, to = {0, 1, 0}, radius = 2.05},
-    gr.box(plaster, {-.48, -.1, 0}, {.48, 1, 4})))
+scene:add_child(gr.difference(gr.cylinder{material = plaster, from = {0, -.2, 0}, to = {0, .07, 0}, radius = 2.72, edge = .02},
+    gr.cylinder{material = plaster, from = {0, .0, 0}, to = {0, 1, 0}, radius = 2.05}))
 
 -- the snow: drifts, a bank around the dome, and a track of footprints that ends at the door
 local steps = {}
@@ -24,8 +25,8 @@ local function ground(x, z)
     h = h * gr.smoothstep(2.2, 4.5, d) + .10 * gr.smoothstep(.55, 0, gr.max(d - 2.75, 2.75 - d)) * gr.smoothstep(.3, .8, gr.max(x, -x, -z))
     h = h + 2.3 * gr.smoothstep(7, 32, -z) * (.55 + .45 * gr.noise(x * .09 + 2, 5, z * .05))
     for _, s in ipairs(steps) do
-        local q = ((x - s[1]) / .075) ^ 2 + ((z - s[2]) / .15) ^ 2
-        h = h - .07 * gr.smoothstep(1.6, .7, q) + .012 * gr.smoothstep(.9, 0, gr.max(q - 2.1, 2.1 - q))
+        local sole, heel = ((x - s[1]) / .052) ^ 2 + ((z - s[2] + .06) / .13) ^ 2, ((x - s[1]) / .042) ^ 2 + ((z - s[2] - .12) / .075) ^ 2
+        h = h - .05 * gr.smoothstep(1.5, .7, gr.min(sole, heel))
     end
     return h
 end
@@ -78,25 +79,31 @@ local wool = gr.openpbr_material{base_color = {.05, .045, .05}, fuzz_weight = .5
 local scarf = gr.openpbr_material{base_color = {.55, .03, .02}, fuzz_weight = .5, specular_weight = .1}
 local skin = gr.openpbr_material{base_color = {.55, .36, .27}}
 local walker = gr.node 'walker'
-walker:add_child(gr.implicit{material = wool, radius = .75, centre = {0, .52, 0}, f = sdf.smooth_union(.05,
-    sdf.capsule({.055, .02, .10}, {.05, .45, .02}, .042, .06), sdf.capsule({-.055, .05, -.14}, {-.05, .45, 0}, .042, .06),
-    sdf.capsule({0, .42, 0}, {0, .80, -.02}, .135, .10), sdf.capsule({.10, .80, -.02}, {.17, .52, .05}, .05, .04),
-    sdf.capsule({-.10, .80, -.02}, {-.17, .53, -.10}, .05, .04))})
+local coat = sdf.smooth_union(.05, sdf.capsule({0, .30, 0}, {0, .78, -.02}, .185, .095), sdf.capsule({-.10, .815, -.02}, {.10, .815, -.02}, .055),
+    sdf.capsule({.15, .80, -.02}, {.205, .48, .05}, .048, .042), sdf.capsule({-.15, .80, -.02}, {-.205, .49, -.09}, .048, .042))
+walker:add_child(gr.implicit{material = wool, radius = .8, centre = {0, .5, 0}, f = sdf.union(sdf.intersection(coat, sdf.plane({0, -1, 0}, -.26)),
+    sdf.capsule({.075, .05, .10}, {.07, .4, .02}, .042, .06), sdf.capsule({-.07, .05, -.15}, {-.065, .4, 0}, .042, .06),
+    sdf.capsule({.075, .03, .12}, {.08, .03, .0}, .045), sdf.capsule({-.07, .03, -.13}, {-.075, .03, -.25}, .045))})
 walker:add_child(gr.sphere{material = skin, centre = {0, .99, -.03}, radius = .075})
 walker:add_child(gr.ellipsoid{material = wool, centre = {0, 1.03, -.015}, radii = {.085, .062, .085}})
 walker:add_child(gr.torus(scarf, .065, .035):translate(0, .885, -.02))
 walker:add_child(gr.sweep(scarf, {{.05, .88, .05}, {.08, .78, .12}, {.07, .66, .14}}, {.03, .032, .028}))
-scene:add_child(walker:scale(1.2, 1.2, 1.2):translate(.42, ground(.42, 4.05) + .01, 4.05))
+scene:add_child(walker:scale(1.2, 1.2, 1.2):translate(.29, ground(.29, 4.05) + .01, 4.05))
 
--- falling snow, the lamp on its stand
+-- falling snow, none near the camera or the dome; a flake shines a little, as light goes through it
+local flake = gr.openpbr_material{base_color = {.9, .92, .95}, emission_luminance = .10, emission_color = {.8, .9, 1.1}}
 for _ = 1, 420 do
-    local z = dice:range(-7, 7.4)
-    scene:add_child(gr.sphere{material = snow, centre = {dice:range(-.42, .42) * (13 - z) + .6, dice:range(.05, 4.4), z}, radius = dice:range(.010, .02)})
+    local z = dice:range(-7, 5)
+    local p, radius = gr.vec(dice:range(-.42, .42) * (13 - z) + .6, dice:range(.2, 4.4), z), dice:range(.010, .02)
+    if p:length() > 3.1 then scene:add_child(gr.sphere{material = flake, centre = p, radius = radius}) end
 end
-scene:add_child(gr.sphere{material = gr.material{kd = {0, 0, 0}, emission = {44, 23, 8.5}}, centre = {-.1, .92, -.2}, radius = .26})
-scene:add_child(gr.cylinder{material = twig, from = {-.1, -.1, -.2}, to = {-.1, .7, -.2}, radius = .03})
+-- the lamp on its stand
+scene:add_child(gr.sphere{material = gr.material{kd = {0, 0, 0}, emission = {44, 23, 8.5}}, centre = {-.28, .92, -.2}, radius = .26})
+scene:add_child(gr.lathe(twig, {{0, -.1}, {.19, -.1}, {.19, .03}, {.15, .055}, {.05, .08}, {.03, .14}, {.03, .7}, {0, .7}}):translate(-.28, 0, -.2))
 
+-- the moon is a wide disc: its shadows are soft
 local night = gr.sky_gradient{{-1, .006, .01, .022}, {0, .026, .042, .095}, {.25, .013, .024, .065}, {1, .004, .008, .03}}
 gr.render{node = scene, file = 'pavilion.png', width = 1600, height = 1000, eye = {1.9, 1.25, 10.2}, target = {.12, 1.5, 0}, fov = 30,
     integrator = 'path', denoise = true, tone = 'filmic', exposure = .25, clamp = 10, max_depth = 6, background = night, bloom = .06, vignette = .25,
-    aperture = .025, focus_point = {0, 1, 1.8}, lights = {gr.sky_light{sky = night}, gr.directional_light{direction = {.55, -.5, -.45}, colour = {.028, .042, .085}}}}
+    aperture = .025, focus_point = {0, 1, 1.8},
+    lights = {gr.sky_light{sky = night}, gr.disc_light{position = {-25.5, 23.2, 20.9}, normal = {.55, -.5, -.45}, radius = 9, emission = {.55, .83, 1.68}}}}

@@ -16,9 +16,15 @@ local stone = gr.openpbr_material{specular_roughness = .45, base_color = functio
     local worn = gr.smoothstep(.5, 0, gr.length(gr.vec(p.x, 0, p.z)) - 1.3)
     return gr.mix(gr.vec(.62, .55, .45), gr.vec(.44, .38, .31), .5 * gr.turbulence(p * 5, 3) + .3 * worn)
 end}
-local iron = gr.openpbr_material{base_color = {.03, .03, .032}, specular_roughness = .38}
+local iron = gr.openpbr_material{base_color = {.03, .03, .032}, specular_roughness = .6}
 local brass = gr.metal_material{metal = 'brass', roughness = function(p) return .16 + .14 * gr.turbulence(p * 9, 3) end}
-local oak = materials.named('walnut', {scale = 2})
+-- oak whose grain follows the rail: fine across it, long along it; v is the height over the rail's middle
+local oak = gr.openpbr_material{specular_roughness = .55, specular_weight = .6, base_color = function(p)
+    local r, v = (p.x ^ 2 + p.z ^ 2) ^ .5 - 1.22, p.y - math.atan(p.z, p.x) * rise / math.rad(turn) - .92
+    v = (v + .5) % (24 * rise) - .5
+    local grain = gr.noise(r * 60, v * 60, p.y * 1.5) + .5 * gr.noise(r * 170, v * 170, p.y * 4)
+    return gr.mix(gr.vec(.25, .125, .055), gr.vec(.135, .062, .027), gr.smoothstep(-.6, .7, grain))
+end}
 local carpet = gr.openpbr_material{fuzz_weight = .7, fuzz_color = {.75, .10, .09}, fuzz_roughness = .6, specular_weight = 0,
     base_color = function(p)
         local radius = (p.x ^ 2 + p.z ^ 2) ^ .5
@@ -40,7 +46,7 @@ local function at(radius, degrees, y) return {radius * math.cos(math.rad(degrees
 -- one step, whose copies turn and rise
 local step = gr.node 'step'
 step:add_child(gr.prism{material = stone, outline = sector(well, wall + .1, 0, turn + 1.2), from = -.05, to = 0, edge = .015})
-step:add_child(gr.prism{material = stone, outline = sector(well + .02, wall + .1, .8, turn + .8), from = -.32, to = -.05})
+step:add_child(gr.prism{material = stone, outline = sector(well, wall + .1, .2, turn + .8), from = -.32, to = -.016})
 step:add_child(gr.prism{material = carpet, outline = sector(1.64, 2.46, -.15, turn + .4), from = -.02, to = .014})
 step:add_child(gr.prism{material = carpet, outline = sector(1.64, 2.46, -.25, .3), from = -rise, to = .012})
 step:add_child(gr.cylinder{material = brass, from = at(1.58, turn - .4, .03), to = at(2.52, turn - .4, .03), radius = .016})
@@ -49,11 +55,13 @@ for k = 0, 1 do
     local a = 3.5 + 7.5 * k
     step:add_child(gr.cylinder{material = iron, from = at(1.22, a, 0), to = at(1.22, a, .95 + .085 * k), radius = .014})
     step:add_child(gr.sphere{material = iron, centre = at(1.22, a, .5 + .085 * k), radius = .034})
+    step:add_child(gr.cylinder{material = iron, from = at(1.22, a, -.01), to = at(1.22, a, .022), radius = .036, edge = .008})
+    step:add_child(gr.cone{material = iron, from = at(1.22, a, .02), to = at(1.22, a, .075), from_radius = .028, radius = .014})
 end
 local rail, string = {}, {}
 for i = 0, steps - 1 do
     scene:add_child(gr.node{children = {step}}:rotate('y', -turn * i):translate(0, rise * i, 0))
-    rail[i + 1], string[i + 1] = at(1.22, turn * i + 5.5, rise * i + .98), at(well + .02, turn * i + 7, rise * i - .17)
+    rail[i + 1], string[i + 1] = at(1.22, turn * i + 5.5, rise * i + .98), at(well + .02, turn * i + 7, rise * i - .26)
 end
 scene:add_child(gr.sweep(oak, rail, .045))
 scene:add_child(gr.sweep(plaster, string, .15))
