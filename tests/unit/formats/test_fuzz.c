@@ -10,15 +10,8 @@
 
 #define TARGETS(X)                                                                                                     \
     X(bitmap)                                                                                                          \
-    X(expr)                                                                                                            \
-    X(font)                                                                                                            \
-    X(messages)                                                                                                        \
-    X(gltf)                                                                                                            \
-    X(gz)                                                                                                              \
-    X(jpeg)                                                                                                            \
-    X(light)                                                                                                           \
-    X(light_field) X(merge) X(mtl) X(obj) X(options) X(order) X(ply) X(png) X(resume) X(scene_json) X(script) X(stl)   \
-        X(tiles) X(voxels)
+    X(bundle) X(expr) X(font) X(messages) X(gltf) X(gz) X(jpeg) X(light) X(light_field) X(merge) X(mtl) X(obj)         \
+        X(options) X(order) X(ply) X(png) X(resume) X(scene_json) X(script) X(stl) X(tiles) X(voxels)
 
 /* The total size of the inputs of a target. */
 struct inputs {
