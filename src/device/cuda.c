@@ -23,7 +23,8 @@ static const double memory_share = 0.8, longest_launch = 0.025, shortest_launch 
 
 #define KERNELS(X)                                                                                                     \
     X(LANES, "lanes")                                                                                                  \
-    X(BEGIN, "begin") X(EXTEND, "extend") X(SHADE, "shade") X(SHADOW, "shadow") X(ADD, "add") X(FINISH, "finish")
+    X(BEGIN, "begin")                                                                                                  \
+    X(EXTEND, "extend") X(SORT, "sort") X(SHADE, "shade") X(SHADOW, "shadow") X(ADD, "add") X(FINISH, "finish")
 #define KERNEL_MEMBER(member, name) KERNEL_##member,
 #define KERNEL_NAME(member, name) "kernel_" name,
 enum kernel { KERNELS(KERNEL_MEMBER) KERNEL_COUNT };
@@ -32,7 +33,7 @@ enum kernel { KERNELS(KERNEL_MEMBER) KERNEL_COUNT };
 struct card_stream {
     _Atomic bool taken;
     void *handle;
-    uint64_t wave, states, living[2], pixels, lanes; /* addresses on the card; 0: none yet */
+    uint64_t wave, states, living[2], sorted, pixels, lanes; /* addresses on the card; 0: none yet */
 };
 
 struct cuda {
@@ -143,7 +144,7 @@ const char *cuda_lost(struct cuda *cuda) {
 /* The most paths and lanes for which all streams fit into the memory of the card. */
 static bool divide_memory(struct cuda *cuda, size_t idle, struct error *error) {
     enum { MAX_PATHS = 1 << 20 };
-    const uint64_t state = path_wave_state_size(cuda->scene) + 2 * sizeof(uint32_t);
+    const uint64_t state = path_wave_state_size(cuda->scene) + 3 * sizeof(uint32_t);
     const uint64_t lane = path_lane_size(cuda->crossings), fixed = FILM_TILE * FILM_TILE * sizeof(struct path_pixel);
     const uint64_t budget = (uint64_t)(memory_share * (double)idle) / cuda->slots;
     const uint64_t wanted = (uint64_t)cuda->processors * THREADS * BLOCKS;
@@ -161,7 +162,7 @@ static bool divide_memory(struct cuda *cuda, size_t idle, struct error *error) {
 
 /* Of a stream that has made an order. */
 static uint64_t stream_bytes(const struct cuda *cuda) {
-    return cuda->room * (path_wave_state_size(cuda->scene) + 2 * sizeof(uint32_t)) +
+    return cuda->room * (path_wave_state_size(cuda->scene) + 3 * sizeof(uint32_t)) +
            cuda->lanes * path_lane_size(cuda->crossings) + FILM_TILE * FILM_TILE * sizeof(struct path_pixel) +
            sizeof(struct wave);
 }
@@ -252,7 +253,7 @@ static bool fill_stream(struct cuda *cuda, struct card_stream *stream, struct er
     return CALL(cuda, error, stream_create, &stream->handle, 1 /* no order with stream 0 */) &&
            CALL(cuda, error, take, &stream->wave, sizeof(struct wave)) &&
            CALL(cuda, error, take, &stream->states, states) && CALL(cuda, error, take, &stream->living[0], list) &&
-           CALL(cuda, error, take, &stream->living[1], list) &&
+           CALL(cuda, error, take, &stream->living[1], list) && CALL(cuda, error, take, &stream->sorted, list) &&
            CALL(cuda, error, take, &stream->pixels, FILM_TILE * FILM_TILE * sizeof(struct path_pixel)) &&
            CALL(cuda, error, take, &stream->lanes, cuda->lanes * path_lane_size(cuda->crossings));
 }
@@ -282,6 +283,7 @@ static bool run_wave(struct cuda *cuda, const struct card_stream *stream, struct
         const uint32_t count = wave->living_count[turn % 2];
         const double start = clock_now();
         ok = launch(cuda, stream, KERNEL_EXTEND, count, turn, error) &&
+             launch(cuda, stream, KERNEL_SORT, count, turn, error) &&
              launch(cuda, stream, KERNEL_SHADE, count, turn, error) &&
              launch(cuda, stream, KERNEL_SHADOW, count, turn, error) &&
              CALL(cuda, error, download, wave, stream->wave, sizeof *wave, stream->handle) &&
@@ -310,6 +312,7 @@ static bool run_order(struct cuda *cuda, struct card_stream *stream, const struc
                         .order = *order,
                         .pixels = (struct path_pixel *)(uintptr_t)stream->pixels,
                         .states = (char *)(uintptr_t)stream->states,
+                        .sorted = (uint32_t *)(uintptr_t)stream->sorted,
                         .state_size = path_wave_state_size(cuda->scene),
                         .living = {(uint32_t *)(uintptr_t)stream->living[0], (uint32_t *)(uintptr_t)stream->living[1]}};
     bool ok = CALL(cuda, error, upload, stream->pixels, pixels, size, stream->handle) &&

@@ -15,9 +15,9 @@ struct cuda *cuda_create(const struct cuda_calls *calls, const struct file_bytes
                          struct error *error);
 void cuda_destroy(struct cuda *cuda);
 /* Copies a scene to the card, and lets the card make a few samples of the middle of the picture, which must have the
- * bits that `here` gives them, a device of this process; measures its rate. bytes: of the bundle, not opened; they are not needed
- * afterwards. scene: the same, opened for this process; it must outlive cuda. Errors: as bundle_open; of the driver;
- * memory needed and free; other bits. */
+ * bits that `here` gives them, a device of this process; measures its rate. bytes: of the bundle, not opened; they are
+ * not needed afterwards. scene: the same, opened for this process; it must outlive cuda. Errors: as bundle_open; of the
+ * driver; memory needed and free; other bits. */
 bool cuda_open_scene(struct cuda *cuda, void *bytes, size_t size, const struct path_scene *scene,
                      const struct path_device *here, struct error *error);
 /* Its orders; `begin` is NULL. It may be used until the end of cuda. */

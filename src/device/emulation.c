@@ -61,9 +61,11 @@ static bool run_wave(const struct emulation *emulation, struct wave *wave, struc
             return false;
         for (uint32_t k = 0; k < count; k++)
             wave_extend(wave, lane, turn, k);
+        for (uint32_t k = 0; k < count; k++)
+            wave_sort(wave, turn, k);
         wave_clear_next(wave, turn);
         for (uint32_t k = 0; k < count; k++)
-            wave_shade(wave, lane, turn, k);
+            wave_shade(wave, lane, k);
         for (uint32_t k = 0; k < count; k++)
             wave_shadow(wave, lane, turn, k);
     }
@@ -101,8 +103,9 @@ static bool make(void *context, const struct path_order *order, struct path_pixe
     wave.states = mem_alloc(room * wave.state_size);
     wave.living[0] = mem_alloc(room * sizeof *wave.living[0]);
     wave.living[1] = mem_alloc(room * sizeof *wave.living[1]);
+    wave.sorted = mem_alloc(room * sizeof *wave.sorted);
     void *memory = mem_alloc_aligned(16, path_lane_size(crossings));
-    bool goes_on = wave.states && wave.living[0] && wave.living[1] && memory;
+    bool goes_on = wave.states && wave.living[0] && wave.living[1] && wave.sorted && memory;
     struct path_lane *lane = goes_on ? path_lane_init(memory, scene, crossings) : NULL;
     for (; goes_on && wave.first < paths; wave.first += wave.count) {
         const uint64_t left = paths - wave.first;
@@ -118,6 +121,7 @@ static bool make(void *context, const struct path_order *order, struct path_pixe
         path_counts_add(counts, &made);
     }
     mem_free(memory);
+    mem_free(wave.sorted);
     mem_free(wave.living[1]);
     mem_free(wave.living[0]);
     mem_free(wave.states);

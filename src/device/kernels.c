@@ -32,6 +32,7 @@ static uint32_t thread_count(void) {
 void kernel_lanes(uint64_t lanes, uint64_t scene, uint32_t crossings);
 void kernel_begin(uint64_t wave, uint64_t lanes, uint32_t crossings);
 void kernel_extend(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
+void kernel_sort(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
 void kernel_shade(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
 void kernel_shadow(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
 void kernel_add(uint64_t wave, uint64_t lanes, uint32_t crossings);
@@ -59,13 +60,20 @@ void kernel_extend(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t t
         wave_extend(w, lane, turn, k);
 }
 
+void kernel_sort(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn) {
+    struct wave *w = (struct wave *)(uintptr_t)wave;
+    (void)lanes, (void)crossings;
+    for (uint32_t k = thread_index(); k < w->living_count[turn % 2]; k += thread_count())
+        wave_sort(w, turn, k);
+}
+
 void kernel_shade(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn) {
     struct wave *w = (struct wave *)(uintptr_t)wave;
     struct path_lane *lane = lane_of(lanes, crossings);
     if (thread_index() == 0)
         wave_clear_next(w, turn);
     for (uint32_t k = thread_index(); k < w->living_count[turn % 2]; k += thread_count())
-        wave_shade(w, lane, turn, k);
+        wave_shade(w, lane, k);
 }
 
 void kernel_shadow(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn) {

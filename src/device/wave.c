@@ -15,21 +15,33 @@ void wave_begin(struct wave *wave, struct path_lane *lane, uint32_t i) {
 }
 
 void wave_extend(struct wave *wave, struct path_lane *lane, uint32_t turn, uint32_t k) {
-    path_wave_extend(wave->scene, lane, state_of(wave, wave->living[turn % 2][k]));
+    struct path_wave_state *state = state_of(wave, wave->living[turn % 2][k]);
+    path_wave_extend(wave->scene, lane, state);
+    (void)__atomic_fetch_add(&wave->class_count[path_wave_class(wave->scene, state)], 1, __ATOMIC_RELAXED);
 }
 
-void wave_shade(struct wave *wave, struct path_lane *lane, uint32_t turn, uint32_t k) {
-    path_wave_shade(wave->scene, lane, state_of(wave, wave->living[turn % 2][k]));
+void wave_sort(struct wave *wave, uint32_t turn, uint32_t k) {
+    const uint32_t i = wave->living[turn % 2][k], class = path_wave_class(wave->scene, state_of(wave, i));
+    uint32_t first = 0;
+    for (uint32_t c = 0; c < class; c++)
+        first += wave->class_count[c];
+    wave->sorted[first + __atomic_fetch_add(&wave->class_used[class], 1, __ATOMIC_RELAXED)] = i;
+}
+
+void wave_shade(struct wave *wave, struct path_lane *lane, uint32_t k) {
+    path_wave_shade(wave->scene, lane, state_of(wave, wave->sorted[k]));
 }
 
 void wave_shadow(struct wave *wave, struct path_lane *lane, uint32_t turn, uint32_t k) {
-    const uint32_t i = wave->living[turn % 2][k];
+    const uint32_t i = wave->sorted[k];
     if (path_wave_shadow(wave->scene, lane, state_of(wave, i)))
         keep_alive(wave, turn + 1, i);
 }
 
 void wave_clear_next(struct wave *wave, uint32_t turn) {
     wave->living_count[(turn + 1) % 2] = 0;
+    for (uint32_t c = 0; c < PATH_CLASSES; c++)
+        wave->class_count[c] = wave->class_used[c] = 0;
 }
 
 /* The samples of a pixel that the order has. */

@@ -15,17 +15,20 @@ struct wave {
     uint64_t state_size; /* path_wave_state_size */
     uint32_t *living[2]; /* paths, in any order: those of an even turn and those of an odd one; room for `count` */
     uint32_t living_count[2];
-    struct path_counts counts; /* of all waves of the order, when they are made */
+    uint32_t *sorted; /* those of the turn by their classes (path_wave_class); room for `count` */
+    uint32_t class_count[PATH_CLASSES], class_used[PATH_CLASSES]; /* of the turn: paths, and those in `sorted` */
+    struct path_counts counts;                                    /* of all waves of the order, when they are made */
     bool met_fault;
 };
 
 /* Path i of the wave; counts it among the living of turn 0. */
 void wave_begin(struct wave *wave, struct path_lane *lane, uint32_t i);
-/* Living path k of the turn; the last one counts it among those of the next turn. */
+/* Living path k of the turn, then sorted path k; the last one counts it among those of the next turn. */
 void wave_extend(struct wave *wave, struct path_lane *lane, uint32_t turn, uint32_t k);
-void wave_shade(struct wave *wave, struct path_lane *lane, uint32_t turn, uint32_t k);
+void wave_sort(struct wave *wave, uint32_t turn, uint32_t k);
+void wave_shade(struct wave *wave, struct path_lane *lane, uint32_t k);
 void wave_shadow(struct wave *wave, struct path_lane *lane, uint32_t turn, uint32_t k);
-/* Before the last one: nothing lives in the next turn. */
+/* Beside wave_shade: nothing lives in the next turn; and the classes have no paths. */
 void wave_clear_next(struct wave *wave, uint32_t turn);
 /* Pixel i of those that have paths in the wave. A pixel that has lost a sample gets no more, so that it lacks them in
  * the end. */

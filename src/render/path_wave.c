@@ -125,6 +125,15 @@ void path_wave_extend(const struct path_scene *scene, struct path_lane *lane, st
     leave(lane, wave);
 }
 
+uint32_t path_wave_class(const struct path_scene *scene, const struct path_wave_state *wave) {
+    enum { MATERIALS = PATH_CLASSES - 2 };
+    const uint32_t primitive = wave->path.met.primitive;
+    if (wave->below)
+        return MATERIALS;
+    return primitive == WORLD_NOTHING ? MATERIALS + 1
+                                      : primitive_prototype(scene->job.world, primitive)->material % MATERIALS;
+}
+
 void path_wave_shade(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *wave) {
     enter(lane, scene, wave);
     bool goes_on = (wave->below ? come_out : shade)(&scene->tracer, &lane->state, &wave->path, &wave->shadow, NULL);

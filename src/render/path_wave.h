@@ -45,6 +45,9 @@ struct path_counts path_lane_counts(const struct path_lane *lane); /* of all its
 bool path_wave_begin(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *state,
                      const struct path_order *order, uint64_t number);
 void path_wave_extend(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *state);
+/* After it: paths of one class do the same next, by the material that they have met. */
+enum { PATH_CLASSES = 16 };
+uint32_t path_wave_class(const struct path_scene *scene, const struct path_wave_state *state);
 void path_wave_shade(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *state);
 bool path_wave_shadow(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *state);
 /* In the order of the samples. False: the memory of a query was too small, and the pixel has lost this sample. */

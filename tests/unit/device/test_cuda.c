@@ -42,8 +42,8 @@ static struct {
 /* What a file of kernels has. */
 #define PLAYED_MODULE(kernel) kernel " 8\nkernels\0"
 static const char played_kernels[] = "gray kernels\n" PLAYED_MODULE("kernel_lanes") PLAYED_MODULE("kernel_begin")
-    PLAYED_MODULE("kernel_extend") PLAYED_MODULE("kernel_shade") PLAYED_MODULE("kernel_shadow")
-        PLAYED_MODULE("kernel_add") PLAYED_MODULE("kernel_finish");
+    PLAYED_MODULE("kernel_extend") PLAYED_MODULE("kernel_sort") PLAYED_MODULE("kernel_shade")
+        PLAYED_MODULE("kernel_shadow") PLAYED_MODULE("kernel_add") PLAYED_MODULE("kernel_finish");
 
 static void reset_card(void) {
     for (int i = 0; i < card.block_count; i++)
@@ -147,8 +147,8 @@ static int play_load(void **module, const void *image) {
     return answer();
 }
 
-static const char *const kernel_names[] = {"kernel_lanes",  "kernel_begin", "kernel_extend", "kernel_shade",
-                                           "kernel_shadow", "kernel_add",   "kernel_finish"};
+static const char *const kernel_names[] = {"kernel_lanes", "kernel_begin",  "kernel_extend", "kernel_sort",
+                                           "kernel_shade", "kernel_shadow", "kernel_add",    "kernel_finish"};
 static int play_function(void **function, void *module, const char *name) {
     (void)module;
     for (size_t i = 0; i < sizeof kernel_names / sizeof *kernel_names; i++)
@@ -172,14 +172,15 @@ struct kernels {
     void (*lanes)(uint64_t lanes, uint64_t scene, uint32_t crossings);
     void (*begin)(uint64_t wave, uint64_t lanes, uint32_t crossings);
     void (*extend)(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
+    void (*sort)(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
     void (*shade)(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
     void (*shadow)(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
     void (*add)(uint64_t wave, uint64_t lanes, uint32_t crossings);
     void (*finish)(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t count);
     uint32_t *thread, *threads;
 };
-static const struct kernels own = {kernel_lanes, kernel_begin,  kernel_extend,  kernel_shade,   kernel_shadow,
-                                   kernel_add,   kernel_finish, &played_thread, &played_threads};
+static const struct kernels own = {kernel_lanes,  kernel_begin, kernel_extend, kernel_sort,    kernel_shade,
+                                   kernel_shadow, kernel_add,   kernel_finish, &played_thread, &played_threads};
 static struct kernels kernels;
 
 static void run_kernel(int kernel, uint64_t first, uint64_t second, uint32_t crossings, uint32_t last) {
@@ -194,12 +195,15 @@ static void run_kernel(int kernel, uint64_t first, uint64_t second, uint32_t cro
         kernels.extend(first, second, crossings, last);
         break;
     case 3:
-        kernels.shade(first, second, crossings, last);
+        kernels.sort(first, second, crossings, last);
         break;
     case 4:
-        kernels.shadow(first, second, crossings, last);
+        kernels.shade(first, second, crossings, last);
         break;
     case 5:
+        kernels.shadow(first, second, crossings, last);
+        break;
+    case 6:
         kernels.add(first, second, crossings);
         break;
     default:
@@ -222,7 +226,7 @@ static int play_launch(void *function, unsigned blocks, unsigned y, unsigned z, 
         run_kernel(kernel, *(uint64_t *)arguments[0], *(uint64_t *)arguments[1], *(uint32_t *)arguments[2],
                    *(uint32_t *)arguments[3]);
     }
-    if (kernel == 5 && card.is_wrong)
+    if (kernel == 6 && card.is_wrong)
         ((struct wave *)(uintptr_t) * (uint64_t *)arguments[0])->pixels->sums[0].r += 0x1p-30F;
     enter(false);
     return 0;
@@ -352,6 +356,7 @@ TEST(what_a_ray_touches_compiles_for_cards_and_gives_the_bytes_of_threads) {
     find_symbol(library, "kernel_lanes", &kernels.lanes);
     find_symbol(library, "kernel_begin", &kernels.begin);
     find_symbol(library, "kernel_extend", &kernels.extend);
+    find_symbol(library, "kernel_sort", &kernels.sort);
     find_symbol(library, "kernel_shade", &kernels.shade);
     find_symbol(library, "kernel_shadow", &kernels.shadow);
     find_symbol(library, "kernel_add", &kernels.add);
