@@ -1,6 +1,6 @@
 -- TITLE: Marbles in the morning
 -- OPTIONS: --size 400x250 --spp 6 --caustics 400000
--- LARGE: --spp 80 --caustics 4000000
+-- LARGE: --spp 100 --caustics 4000000
 -- Glass with coloured vanes and bubbles on an old table, before a garden that is out of focus. Photons carry the light of the
 -- low sun through the glass; the glass has the dispersion of flint, so the rims of the bright spots have colours.
 local patterns, random = require 'patterns', require 'random'
