@@ -112,8 +112,12 @@ static void set_layers(const struct surface_material *material, const struct sur
     out->metallic = v->base_metalness;
     out->roughness = in->roughness;
     out->specular = in->ks;
-    out->specular_weight = v->specular_weight;
+    out->specular_weight = math_min(v->specular_weight, 1);
     out->ior = math_max(v->specular_ior, 1);
+    if (v->specular_weight > 1) { /* glTF has it up to 1: the index changes in its place */
+        double root = (out->ior - 1) / (out->ior + 1);
+        out->ior = index_of_reflectance(v->specular_weight * root * root);
+    }
     out->transmission = in->refract;
     out->is_solid = !v->thin_walled && in->refract > 0;
     out->dispersion = dispersion_of(&material->phong, out->ior);

@@ -94,11 +94,12 @@ TEST(layers_come_back_from_a_glb_within_2_percent) {
         "ball{coat_weight = 0.6, coat_roughness = 0.1, fuzz_weight = 0.5, fuzz_color = {0.2, 0.4, 1}, "
         "fuzz_roughness = 0.7},\n"
         "ball{thin_film_weight = 0.5, thin_film_thickness = 0.3, thin_film_ior = 1.6},\n"
-        "ball{emission_luminance = 5, emission_color = {1, 0.5, 0}, geometry_opacity = 0.5}}}}\n",
+        "ball{emission_luminance = 5, emission_color = {1, 0.5, 0}, geometry_opacity = 0.5},\n"
+        "ball{specular_weight = 2}}}}\n",
         "-o x.glb scene.lua", 0, NULL);
     read_file(&model, "x.glb", -1);
     const struct model_material *m = model_materials(&model);
-    if (model.materials.count == 7) { /* the last one is that of primitives without one */
+    if (model.materials.count == 8) { /* the last one is that of primitives without one */
         check_colour("base_color", m[0].kd, 0.8, 0.1, 0.3);
         check_near("roughness", m[0].roughness, 0.35);
         check_near("specular_ior", m[0].layers.specular_ior, 1.4);
@@ -119,6 +120,8 @@ TEST(layers_come_back_from_a_glb_within_2_percent) {
         check_near("film_ior", m[4].layers.film_ior, 1.6);
         check_colour("emission", m[5].ke, 5, 2.5, 0);
         check_near("opacity", m[5].dissolve, 0.5);
+        check_near("largest specular_weight", m[6].layers.specular_weight, 1);
+        check_near("index of twice the reflectance", m[6].layers.specular_ior, (1 + sqrt(0.08)) / (1 - sqrt(0.08)));
     } else {
         test_fail(__FILE__, __LINE__, "%zu materials", model.materials.count);
     }
