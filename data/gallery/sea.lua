@@ -2,12 +2,12 @@
 -- OPTIONS: --size 400x250 --spp 12
 -- LARGE: --spp 80
 -- A low sun draws its road over the swell. The water is a height field of Gerstner-like waves and ripples; foam lies on the
--- crests; the buoy has rust, a cage, a lamp, and a gull. With --frames 96 --loop the waves pass.
--- LOOP: --frames 96 --fps 24 --loop --size 800x500 --spp 16
+-- crests; the buoy has rust, a cage, a lamp, and a gull. With --frames 72 --loop the waves pass.
+-- LOOP: --frames 72 --fps 24 --loop --size 800x500 --spp 12
 local random = require 'random'
 local scene = gr.node 'sea'
 local dice = random.new(3)
-local clock = gr.clock or 0                       -- a loop of four seconds
+local clock = gr.clock or 0                       -- a loop of three seconds
 local cells = quick and 200 or 1500               -- -D quick=true makes a draft
 local sun = gr.vec(.16, .075, -1):normalize()
 
