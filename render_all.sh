@@ -124,6 +124,8 @@ describe() { # describe SCRIPT NAME SECONDS
     taken=$3
     shift 3
     shown=0
+    large="${script%.lua}.png"
+    loop="${script%.lua}.mp4"
     for picture in "$@"; do
         [ -f "$picture" ] || continue
         shown=$((shown + 1))
@@ -131,11 +133,17 @@ describe() { # describe SCRIPT NAME SECONDS
         size=$(size_of "$picture")
         [ $shown -ne 1 ] || echo "<figure style=\"--shape: $(echo "$size" | awk '{ print $1 / $2 }')\">"
         [ $shown -ne 2 ] || echo "<div class=\"more\">"
-        echo "<a class=\"picture\" href=\"$file\"><img src=\"$file\" width=\"${size% *}\" height=\"${size#* }\" alt=\"$title\" loading=\"lazy\"></a>"
+        link=$file
+        [ $shown -ne 1 ] || [ ! -f "$large" ] || link=../$large # a click shows the finished one
+        echo "<a class=\"picture\" href=\"$link\"><img src=\"$file\" width=\"${size% *}\" height=\"${size#* }\" alt=\"$title\" loading=\"lazy\"></a>"
     done
     [ $shown -lt 2 ] || echo "</div>"
-    large="${script%.lua}.png"
     [ ! -f "$large" ] || echo "<p><a href=\"../$large\">finished, $(size_of "$large" | sed 's/ / x /')</a></p>"
+    if [ -f "$loop" ]; then
+        echo "<video src=\"../$loop\" autoplay loop muted playsinline controls></video>"
+    elif grep -q '^-- LOOP: ' "$script"; then
+        echo "<p>as a loop: <code>tools/gallery.sh --loop $(basename "$script" .lua)</code></p>"
+    fi
     why=$(sed -e '/ left$/d' -e '/^ /d' "$gallery/$name.err" | head -n 9 | as_html)
     [ $shown -gt 0 ] || echo "<figure style=\"--shape: 1\"><p class=\"none\">no picture: ${why:-the script makes none}</p>"
     command="./gray $(printf '%s' "$options" | as_html)"
@@ -179,8 +187,18 @@ $plan
 PLAN
 [ $open = no ] || echo "</div>" >>"$gallery/body.html"
 
+# The page opens with the first picture that is there at full size.
+best=
+for script in $(printf '%s\n' "$plan" | sed -n 's/^\(data[^ ]*\).*/\1/p'); do
+    [ ! -f "${script%.lua}.png" ] || { best=${script%.lua}.png && break; }
+done
 {
-    cat data/gallery.html "$gallery/body.html"
+    cat data/gallery.html
+    if [ -n "$best" ]; then
+        size=$(size_of "$best")
+        echo "<p><img class=\"best\" src=\"../$best\" width=\"${size% *}\" height=\"${size#* }\" alt=\"$(about "${best%.png}.lua" TITLE | as_html)\"></p>"
+    fi
+    cat "$gallery/body.html"
     echo "</body></html>"
 } >"$gallery/index.html"
 rm -f "$gallery/body.html"

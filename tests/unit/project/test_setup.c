@@ -237,6 +237,16 @@ TEST(the_gallery_has_the_shape_of_each_picture_and_the_command_that_made_it) {
     check_has("out.txt", "\ndone: open gallery/index.html in a browser; docs/start.md leads to your first scene; ");
 }
 
+TEST(the_gallery_opens_with_the_first_finished_picture_and_shows_its_loop) {
+    make_gallery("[A]\ndata/10demo.lua 1\n[B]\ndata/14demo.lua 1\n");
+    CHECK_EQ_INT(render_all(), 0);
+    CHECK_EQ_INT(test_run_shell("cp gallery/14demo.png data && echo film >data/14demo.mp4", ""), 0);
+    CHECK_EQ_INT(render_all(), 0);
+    check_has("gallery/index.html", "<p><img class=\"best\" src=\"../data/14demo.png\" width=\"400\" height=\"300\"");
+    check_has("gallery/index.html", "<a class=\"picture\" href=\"../data/14demo.png\"><img src=\"14demo.png\"");
+    check_has("gallery/index.html", "<video src=\"../data/14demo.mp4\" autoplay loop muted playsinline controls>");
+}
+
 TEST(rendering_all_scenes_says_how_long_it_takes_and_puts_the_best_first) {
     make_gallery("# a comment\n[Best pictures]\ndata/14demo.lua 95000\ndata/10demo.lua 3\n[Classic]\n"
                  "data/classic/clock.lua 1\n[Test charts]\ndata/01demo.lua 1\n");
