@@ -18,6 +18,16 @@ for name in "$@"; do
         cat "data/gallery/$name.stats" >&2
         exit 1
     }
+    # A loop has 2 MB at most.
+    if [ $word = LOOP ]; then
+        mv "data/gallery/$name.mp4" "data/gallery/$name.large.mp4"
+        for quality in 20 22 24 26 28 30; do
+            ffmpeg -nostdin -v error -y -i "data/gallery/$name.large.mp4" -c:v libx264 -crf $quality -preset veryslow \
+                -pix_fmt yuv420p -movflags +faststart "data/gallery/$name.mp4" || exit 1
+            [ "$(wc -c <"data/gallery/$name.mp4")" -gt 2000000 ] || break
+        done
+        rm -f "data/gallery/$name.large.mp4"
+    fi
     echo "$name"
     awk '/processors: build/ { inside = 1 } inside && /build|render|write/ { seconds += $(NF - 1) } /threads/ { inside = 0 }
         /peak memory/ { memory = $(NF - 1) } END { printf("  %.0f s of processor time, %s MB\n", seconds, memory) }' "data/gallery/$name.stats"
