@@ -16,7 +16,8 @@ enum {
     BLOCKS = 4 /* of a processor of the card */,
     STACK_BYTES = 1 << 16 /* frames of functions that call themselves are not known before */,
     SMALLEST_WAVE = 1 << 12,
-    FIRST_WAVE = 1 << 14
+    FIRST_WAVE = 1 << 14,
+    TILE_BYTES = FILM_TILE * FILM_TILE * sizeof(struct path_pixel)
 };
 /* Of the free memory of the card, for orders. A launch lasts at most .05 s: waves shrink and grow between these. */
 static const double memory_share = 0.8, longest_launch = 0.025, shortest_launch = 0.005;
@@ -41,6 +42,7 @@ struct cuda {
     void *context, *kernels[KERNEL_COUNT];
     char name[256];
     double begun;
+    bool measures;
     int processors;
     uint32_t slots;
     struct card_stream *streams; /* slots */
@@ -108,7 +110,7 @@ static bool load_kernels(struct cuda *cuda, const struct file_bytes *kernels, st
 }
 
 struct cuda *cuda_create(const struct cuda_calls *calls, const struct file_bytes *kernels, uint32_t slots,
-                         struct error *error) {
+                         bool measures, struct error *error) {
     struct cuda *cuda = mem_alloc_zero(1, sizeof *cuda);
     struct card_stream *streams = cuda ? mem_alloc_zero(slots, sizeof *streams) : NULL;
     if (!streams) {
@@ -116,7 +118,8 @@ struct cuda *cuda_create(const struct cuda_calls *calls, const struct file_bytes
         (void)error_no_memory(error, "a card");
         return NULL;
     }
-    *cuda = (struct cuda){.calls = calls, .slots = slots, .streams = streams, .limit = FIRST_WAVE};
+    *cuda =
+        (struct cuda){.calls = calls, .slots = slots, .measures = measures, .streams = streams, .limit = FIRST_WAVE};
     (void)pthread_mutex_init(&cuda->mutex, NULL);
     cuda->begun = clock_now();
     if (find_card(cuda, error) && load_kernels(cuda, kernels, error))
@@ -141,11 +144,15 @@ const char *cuda_lost(struct cuda *cuda) {
 
 /* --- the scene --- */
 
+/* Of a path in flight: its state, and a place in three lists. */
+static uint64_t path_bytes(const struct cuda *cuda) {
+    return path_wave_state_size(cuda->scene) + 3 * sizeof(uint32_t);
+}
+
 /* The most paths and lanes for which all streams fit into the memory of the card. */
 static bool divide_memory(struct cuda *cuda, size_t idle, struct error *error) {
     enum { MAX_PATHS = 1 << 20 };
-    const uint64_t state = path_wave_state_size(cuda->scene) + 3 * sizeof(uint32_t);
-    const uint64_t lane = path_lane_size(cuda->crossings), fixed = FILM_TILE * FILM_TILE * sizeof(struct path_pixel);
+    const uint64_t state = path_bytes(cuda), lane = path_lane_size(cuda->crossings), fixed = TILE_BYTES;
     const uint64_t budget = (uint64_t)(memory_share * (double)idle) / cuda->slots;
     const uint64_t wanted = (uint64_t)cuda->processors * THREADS * BLOCKS;
     const uint64_t needed = SMALLEST_WAVE * state + THREADS * lane + fixed;
@@ -158,13 +165,6 @@ static bool divide_memory(struct cuda *cuda, size_t idle, struct error *error) {
     const uint64_t paths = (budget - fixed - cuda->lanes * lane) / state;
     cuda->room = (uint32_t)(paths < MAX_PATHS ? paths : MAX_PATHS);
     return true;
-}
-
-/* Of a stream that has made an order. */
-static uint64_t stream_bytes(const struct cuda *cuda) {
-    return cuda->room * (path_wave_state_size(cuda->scene) + 3 * sizeof(uint32_t)) +
-           cuda->lanes * path_lane_size(cuda->crossings) + FILM_TILE * FILM_TILE * sizeof(struct path_pixel) +
-           sizeof(struct wave);
 }
 
 /* Whether the card gives a few samples the bits that this processor gives them. */
@@ -220,13 +220,14 @@ bool cuda_open_scene(struct cuda *cuda, void *bytes, size_t size, const struct p
     cuda->scene_on_card = cuda->scene_block + (uint64_t)(root - (const char *)bytes);
     if (!CALL(cuda, error, upload, cuda->scene_block, bytes, size, NULL) || !CALL(cuda, error, stream_wait, NULL) ||
         !CALL(cuda, error, memory, &idle, &all) || !divide_memory(cuda, idle, error) ||
-        !try_samples(cuda, here, error) || !measure(cuda, error))
+        !try_samples(cuda, here, error) || (cuda->measures && !measure(cuda, error)))
         return false;
     struct device_statistics *statistics = &cuda->statistics;
     (void)snprintf(statistics->name, sizeof statistics->name, "%.*s", (int)sizeof statistics->name - 1, cuda->name);
     statistics->start_seconds = clock_now() - cuda->begun;
     statistics->lanes = cuda->lanes;
-    statistics->bytes = size + cuda->slots * stream_bytes(cuda);
+    const uint64_t stream = cuda->room * path_bytes(cuda) + cuda->lanes * path_lane_size(cuda->crossings) + TILE_BYTES;
+    statistics->bytes = size + cuda->slots * stream;
     return true;
 }
 
@@ -254,7 +255,7 @@ static bool fill_stream(struct cuda *cuda, struct card_stream *stream, struct er
            CALL(cuda, error, take, &stream->wave, sizeof(struct wave)) &&
            CALL(cuda, error, take, &stream->states, states) && CALL(cuda, error, take, &stream->living[0], list) &&
            CALL(cuda, error, take, &stream->living[1], list) && CALL(cuda, error, take, &stream->sorted, list) &&
-           CALL(cuda, error, take, &stream->pixels, FILM_TILE * FILM_TILE * sizeof(struct path_pixel)) &&
+           CALL(cuda, error, take, &stream->pixels, TILE_BYTES) &&
            CALL(cuda, error, take, &stream->lanes, cuda->lanes * path_lane_size(cuda->crossings));
 }
 

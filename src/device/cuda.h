@@ -9,15 +9,16 @@
 
 struct cuda;
 
-/* The driver, the first card, and the kernels of a file (kernels_file_open). slots: orders at a time. calls must
- * outlive it. Errors name the call of the driver and what it said. NULL. */
+/* The driver, the first card, and the kernels of a file (kernels_file_open). slots: orders at a time. measures: each
+ * scene begins with a trial of the rate. calls must outlive it. Errors name the call of the driver and what it said.
+ * NULL. */
 struct cuda *cuda_create(const struct cuda_calls *calls, const struct file_bytes *kernels, uint32_t slots,
-                         struct error *error);
+                         bool measures, struct error *error);
 void cuda_destroy(struct cuda *cuda);
 /* Copies a scene to the card, and lets the card make a few samples of the middle of the picture, which must have the
- * bits that `here` gives them, a device of this process; measures its rate. bytes: of the bundle, not opened; they are
- * not needed afterwards. scene: the same, opened for this process; it must outlive cuda. Errors: as bundle_open; of the
- * driver; memory needed and free; other bits. */
+ * bits that `here` gives them, a device of this process. bytes: of the bundle, not opened; they are not needed
+ * afterwards. scene: the same, opened for this process; it must outlive cuda. Errors: as bundle_open; of the driver;
+ * memory needed and free; other bits. */
 bool cuda_open_scene(struct cuda *cuda, void *bytes, size_t size, const struct path_scene *scene,
                      const struct path_device *here, struct error *error);
 /* Its orders; `begin` is NULL. It may be used until the end of cuda. */

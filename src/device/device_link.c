@@ -66,6 +66,8 @@ void device_link_reason(struct device_link *link, char out[DEVICE_REASON]) {
 
 struct device_statistics device_link_statistics(struct device_link *link) {
     struct device_statistics statistics = link->statistics;
+    if (atomic_load(&link->state) != LINK_READY)
+        return (struct device_statistics){0};
     make_printable(statistics.name, sizeof statistics.name);
     statistics.launches = atomic_load(&link->launches);
     return statistics;

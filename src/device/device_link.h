@@ -10,7 +10,8 @@
 struct device_link;
 /* Bytes for so many orders at a time; they are zero at the start. */
 size_t device_link_size(uint32_t slots);
-/* After this call, nobody waits for the device process. Each of the processes may call it. */
+/* Ends the exchange. Calls that wait for the other process return, and later calls do not wait. Both processes may
+ * close the link. */
 void device_link_close(struct device_link *link);
 
 /* The device process: opens the bundle of a scene and makes orders until the link is closed, with a thread for each
@@ -26,6 +27,7 @@ void device_link_refuse(struct device_link *link, const char *why);
 /* The reason; "": none was given. Control characters are dots, here and in names. */
 enum { DEVICE_REASON = 512 };
 void device_link_reason(struct device_link *link, char out[DEVICE_REASON]);
+/* Zero before it is ready, and after it was closed. */
 struct device_statistics device_link_statistics(struct device_link *link);
 
 /* The render process. Owner: the caller. */

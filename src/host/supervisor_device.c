@@ -19,14 +19,14 @@
 #include <unistd.h>
 
 /* Driver and kernels need files and memory that is executed, so they are loaded before the rights go. */
-static struct cuda *open_card(struct cuda_calls *calls, uint32_t slots, struct error *error) {
+static struct cuda *open_card(struct cuda_calls *calls, uint32_t slots, bool measures, struct error *error) {
     char name[4096 + sizeof "gray-kernels"] = "";
     char *slash = file_canonical("/proc/self/exe", name, 4096) ? strrchr(name, '/') : NULL;
     (void)strcpy(slash ? slash + 1 : name, "gray-kernels");
     struct file_bytes kernels;
     if (!cuda_calls_load(calls, error) || !kernels_file_open(name, &kernels, error))
         return NULL;
-    struct cuda *cuda = cuda_create(calls, &kernels, slots, error);
+    struct cuda *cuda = cuda_create(calls, &kernels, slots, measures, error);
     file_unmap(&kernels);
     return cuda;
 }
@@ -49,7 +49,8 @@ static _Noreturn void run_as_device(struct supervisor *supervisor, pid_t parent,
     bool ok = bytes && share_attach(&link, orders, device_link_size(slots), &error);
     if (is_confined)
         confine_descriptors(STDERR_FILENO);
-    ok = ok && (!is_card || (cuda = open_card(&calls, slots, &error)) != NULL) &&
+    ok = ok &&
+         (!is_card || (cuda = open_card(&calls, slots, supervisor->options->device == DEVICE_AUTO, &error)) != NULL) &&
          (!is_confined || confine_device(is_card, report, sizeof report, &error)) &&
          device_link_serve(link.block, cuda, bytes, size, slots, &error);
     if (!ok && link.block)
@@ -102,6 +103,8 @@ void supervisor_watch_device(struct supervisor *supervisor) {
         return;
     device->process = 0;
     device_link_close(device->link.block);
+    if (WIFEXITED(how) && WEXITSTATUS(how) == 0) /* the render process does not want it */
+        return;
     device_link_reason(device->link.block, reason);
     if (WIFSIGNALED(how))
         (void)snprintf(line, sizeof line, "gray: warning: the device process was killed (signal %d, %s)", WTERMSIG(how),

@@ -32,7 +32,7 @@ bool preview_reply_read(const struct message *message, struct preview_reply *out
     if (message->kind != MESSAGE_PREVIEW_REPLY || message->size != sizeof *out)
         return false;
     memcpy(out, message->body.bytes, sizeof *out);
-    out->report.rays.device = (struct device_statistics){0};
+    out->report.rays.device = (struct device_statistics){0}; /* has a text, and only the supervisor fills it */
     return reply_is_valid(out);
 }
 

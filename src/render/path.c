@@ -205,11 +205,12 @@ static void try_samples(void *context, uint32_t item, int worker_index) {
 
 static struct path_estimate estimate(const struct path_tracer *tracer, struct renderer *renderer) {
     static const double seconds = 0.1;
-    struct measurement measured = {tracer, renderer, clock_now() + seconds, 0};
+    const double begun = clock_now();
+    struct measurement measured = {tracer, renderer, begun + seconds, 0};
     const struct film *film = renderer->job->film;
     (void)pool_run(renderer->pool, (uint32_t)pool_workers(renderer->pool), try_samples, &measured);
     return (struct path_estimate){(double)film->width * (double)film->height * tracer->samples,
-                                  (double)atomic_load(&measured.samples) / seconds};
+                                  (double)atomic_load(&measured.samples) / (clock_now() - begun)};
 }
 
 /* If the job has a device, and it can render the scene, workers give their samples to it. */

@@ -271,7 +271,7 @@ static bool begin_service(void *context, struct bundle *scene, struct error *err
     void *bytes = mem_alloc_aligned(64, size);
     CHECK(bytes && here.begin(here.context, scene, error));
     bundle_write(scene, bytes);
-    service->cuda = cuda_create(&played, &card.kernels, 2, &service->error);
+    service->cuda = cuda_create(&played, &card.kernels, 2, true, &service->error);
     if (service->cuda &&
         !cuda_open_scene(service->cuda, bytes, size, emulation_scene(service->emulation), &here, &service->error)) {
         cuda_destroy(service->cuda);
