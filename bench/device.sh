@@ -1,7 +1,7 @@
 #!/bin/sh
 # Samples of paths a second by a card and by the threads of the processor, five scenes of 512 x 512 pixels with 64 samples
 # (SIZE, SPP), interleaved, medians of RUNS (default 3). The times are those of the render (--stats), with all orders; start
-# is driver, kernels, upload and trial of the card, before them. Last column: whether both wrote the same bytes.
+# is driver, kernels, upload and the samples that try the card, before them. Last column: whether both wrote the same bytes.
 # DEVICE: gpu, or emulate.
 cd "$(dirname "$0")/.." || exit 1
 gray=${GRAY:-$(pwd)/gray} runs=${RUNS:-3} device=${DEVICE:-gpu} out=${OUT:-build/bench}

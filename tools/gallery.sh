@@ -19,7 +19,7 @@ for name in "$@"; do
         exit 1
     }
     # A loop has 2 MB at most.
-    if [ $word = LOOP ]; then
+    if [ $word = LOOP ] && [ "$(wc -c <"data/gallery/$name.mp4")" -gt 2000000 ]; then
         mv "data/gallery/$name.mp4" "data/gallery/$name.large.mp4"
         for quality in 20 22 24 26 28 30; do
             ffmpeg -nostdin -v error -y -i "data/gallery/$name.large.mp4" -c:v libx264 -crf $quality -preset veryslow \
