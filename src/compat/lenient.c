@@ -216,62 +216,14 @@ static int warn(lua_State *L) {
     return 0;
 }
 
-static void set_text(lua_State *L, const char *name, const char *text) {
-    lua_pushstring(L, text);
-    lua_setfield(L, -2, name);
-}
-
-static void push_parameter(lua_State *L, const struct script_parameter *p) {
-    static const struct {
-        unsigned flag;
-        const char *name;
-    } flags[] = {{OPTIONAL, "optional"},          {LOW_OPEN, "low_open"}, {HIGH_OPEN, "high_open"},
-                 {NOT_ZERO, "not_zero"},          {OR_CURVE, "or_curve"}, {OR_TEXTURE, "or_texture"},
-                 {GHOST_IS_NONE, "ghost_is_none"}};
-    lua_newtable(L);
-    set_text(L, "name", p->name);
-    set_text(L, "kind", kind_name(p->kind));
-    set_text(L, "choices", p->choices);
-    lua_pushnumber(L, p->low);
-    lua_setfield(L, -2, "low");
-    lua_pushnumber(L, p->high);
-    lua_setfield(L, -2, "high");
-    lua_pushlightuserdata(L, (void *)(uintptr_t)p);
-    lua_setfield(L, -2, "row");
-    for (size_t i = 0; i < sizeof flags / sizeof *flags; i++) {
-        lua_pushboolean(L, (p->flags & flags[i].flag) != 0);
-        lua_setfield(L, -2, flags[i].name);
-    }
-}
-
-/* Pushes the table of a function: its parameters, and its forms as lists of {parameter, optional}. It is kept. */
+/* Pushes the description of a function with its forms, lists of {parameter, optional}. It is kept. */
 static void push_description(lua_State *L, const struct script_function *function) {
-    static const char *const results[] = {RESULT_KINDS(LIST_WORD)};
     bool optional;
     int index;
-    /* A table that was made before is used again. */
     if (lua_rawgetp(L, LUA_REGISTRYINDEX, function) == LUA_TTABLE)
         return;
-    lua_newtable(L);
-    lua_replace(L, -2);
-    /* What the function is. */
-    set_text(L, "name", function->name);
-    set_text(L, "owner", function->owner == OWNER_NODE ? "node" : "gr");
-    set_text(L, "result", results[function->result]);
-    const struct script_parameter *rest = function_rest(function, &index);
-    set_text(L, "rest", rest ? rest->name : NULL);
-    lua_pushboolean(L, function_renders(function));
-    lua_setfield(L, -2, "renders");
-    lua_pushinteger(L, function->owner == OWNER_NODE ? 2 : 1);
-    lua_setfield(L, -2, "first");
-    lua_pushlightuserdata(L, (void *)(uintptr_t)function);
-    lua_setfield(L, -2, "row");
-    /* Its parameters. */
-    for (int k = 0; k < function->parameter_count; k++) {
-        push_parameter(L, &function->parameters[k]);
-        lua_rawseti(L, -2, k + 1);
-    }
-    /* Its forms. */
+    lua_pop(L, 1);
+    function_push(L, function);
     lua_newtable(L);
     for (int k = 0; k < FORM_LIMIT && function->forms[k]; k++) {
         const char *form = function->forms[k];

@@ -95,13 +95,18 @@ local function number_of(p)
     return '{' .. concat(out, ', ') .. '}'
 end
 
--- The kind, and what else the parameter accepts.
+-- What else a parameter accepts, by its flags.
+local OTHERS = {{'or_texture', 'texture'}, {'or_profile', 'texture'}, {'or_function', 'texture'}, {'or_number', 'kind.number'},
+    {'or_file', 'kind.file'}, {'or_compass', 'compass'}, {'or_pair', 'kind.interval'}, {'or_sky', 'sky'}}
+
 local function parameter(p)
     local any, is_word = {}, p.kind == 'choice' or p.kind == 'axis'
     local is_number = p.kind == 'number' or p.kind == 'whole'
     if not is_word then any[1] = is_number and number_of(p) or reference('kind.' .. p.kind) end
-    if (is_number or is_word) and p.choices ~= '' then any[#any + 1] = '{"enum": [' .. words_of(p) .. ']}' end
-    for _, name in ipairs(p.others) do any[#any + 1] = reference(name) end
+    if (is_number or is_word) and (p.choices or '') ~= '' then any[#any + 1] = '{"enum": [' .. words_of(p) .. ']}' end
+    for _, other in ipairs(OTHERS) do
+        if p[other[1]] then any[#any + 1] = reference(other[2]) end
+    end
     return format('%s: {"anyOf": [%s], "description": %s}', quote(p.name == 'type' and 'field_type' or p.name),
         concat(any, ', '), quote(p.help))
 end
@@ -109,7 +114,8 @@ end
 -- The fields, then what every node has, then `last`.
 local function members(f, first, without)
     local out, has_children = {first}, false
-    for _, p in ipairs(f.parameters) do
+    for k = f.first, #f do
+        local p = f[k]
         has_children = has_children or p.name == 'children'
         if p.name ~= without then out[#out + 1] = parameter(p) end
     end
@@ -120,8 +126,8 @@ end
 
 local function definition(f)
     local required = {'"type"'}
-    for _, p in ipairs(f.parameters) do
-        if not p.optional and not f.has_rest then required[#required + 1] = quote(p.name) end
+    for k = f.first, #f do
+        if not f[k].optional and not f.rest then required[#required + 1] = quote(f[k].name) end
     end
     return format(' "gr.%s": {"type": "object", "properties": {\n   %s},\n  "additionalProperties": false, "required": [%s]}',
         f.name, members(f, format('"type": {"const": %s}', quote(f.name))), concat(required, ', '))
@@ -151,7 +157,7 @@ return function(functions, version)
         if f.renders and f.owner == 'gr' then pictures[#pictures + 1] = quote(f.name) end
         if f.owner == 'node' and f.result == 'self' then methods[#methods + 1] = quote(f.name) .. ': true' end
         if f.owner == 'gr' and f.name == 'render' then render = f end
-        if f.owner == 'gr' and f.name == 'transform_order' then orders = words_of(f.parameters[1]) end
+        if f.owner == 'gr' and f.name == 'transform_order' then orders = words_of(f[1]) end
     end
     for word in gmatch('node material light texture fog medium sky', '%a+') do add_result(results, word, functions) end
     local texts = {
