@@ -38,24 +38,6 @@ static int address(lua_State *L) {
     return 1;
 }
 
-/* The text as a JSON string; nil if it is not UTF-8. */
-static int quote(lua_State *L) {
-    size_t length;
-    const char *text = luaL_checklstring(L, 1, &length);
-    luaL_Buffer out;
-    luaL_buffinit(L, &out);
-    luaL_addchar(&out, '"');
-    for (size_t i = 0, taken; i < length; i += taken) {
-        char piece[JSON_PIECE];
-        if (utf8_length((const unsigned char *)text + i) == 0)
-            return 0;
-        luaL_addlstring(&out, piece, json_piece(text + i, piece, &taken));
-    }
-    luaL_addchar(&out, '"');
-    luaL_pushresult(&out);
-    return 1;
-}
-
 /* The function of a picture that texture:at has made, or NULL. */
 static int image_function(lua_State *L) {
     const struct script_texture *texture = lua_touserdata(L, 1);
@@ -285,7 +267,7 @@ bool scene_write_picture(struct script_context *context, const struct render_req
 
 void scene_write_open(lua_State *L) {
     static const luaL_Reg helpers[] = {
-        {"address", address}, {"quote", quote}, {"forms", forms}, {"image_function", image_function}, {NULL, NULL}};
+        {"address", address}, {"quote", json_quote}, {"forms", forms}, {"image_function", image_function}, {NULL, NULL}};
     embedded_run(L, scene_write_lua, helpers);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &writer);
     context_of(L)->noted = note;

@@ -256,7 +256,10 @@ local function json_of(names)
         local kind = type(value)
         if kind == 'number' then return number_text(value) end
         if kind == 'boolean' then return tostring(value) end
-        if kind == 'string' then return quote(value) or raise('a text is not UTF-8, so JSON cannot have it: ' .. value) end
+        if kind == 'string' then
+            local text, is_utf8 = quote(value)
+            return is_utf8 and text or raise('a text is not UTF-8, so JSON cannot have it: ' .. value)
+        end
         if getmetatable(value) == OBJECT then
             if names[value] and not defines then return '{"ref": ' .. quote(names[value]) .. '}' end
             return object(members(value), indent)
