@@ -268,3 +268,17 @@ struct colour texture_estimate(const struct texture *texture, const struct phong
             parts[k] = texture_estimate(texture->parts[k], numbers, which);
     return texture_operation_estimate(&texture->operation, parts, numbers, which);
 }
+
+struct transfer_function texture_image_transfer(const struct texture_image *lookup, bool colour) {
+    if (lookup->gamma > 0)
+        return (struct transfer_function){TRANSFER_POWER, lookup->gamma};
+    switch (lookup->encoding) {
+    case ENCODING_AUTO:
+        break;
+    case ENCODING_SRGB:
+        return (struct transfer_function){TRANSFER_SRGB, 0};
+    case ENCODING_LINEAR:
+        return (struct transfer_function){TRANSFER_POWER, 1};
+    }
+    return colour ? image_colour_transfer(lookup->image) : (struct transfer_function){TRANSFER_UNSTATED, 0};
+}

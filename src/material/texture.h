@@ -237,6 +237,8 @@ static inline const struct texture_image *texture_as_image(const struct texture 
 /* A copy in the arena. NULL and error: no memory, or the tree is larger than TEXTURE_SIZE. */
 const struct texture *texture_keep(struct arena *arena, struct texture value, struct error *error);
 
+/* How an image becomes light; colour: it is read as one. */
+struct transfer_function texture_image_transfer(const struct texture_image *lookup, bool colour);
 /* The number of parts; that of an image may be NULL. */
 int texture_part_count(enum texture_kind kind);
 /* So many of them, the first ones, are read as colours if the texture is: not the ratio of a mix, and not what a

@@ -267,21 +267,6 @@ static bool add_reports(struct arena *arena, const struct texture_tables *tables
 
 /* --- linear colours --- */
 
-/* How an image becomes light; colour: it is read as one. */
-static struct transfer_function image_transfer_in(const struct texture_image *lookup, bool colour) {
-    if (lookup->gamma > 0)
-        return (struct transfer_function){TRANSFER_POWER, lookup->gamma};
-    switch (lookup->encoding) {
-    case ENCODING_AUTO:
-        break;
-    case ENCODING_SRGB:
-        return (struct transfer_function){TRANSFER_SRGB, 0};
-    case ENCODING_LINEAR:
-        return (struct transfer_function){TRANSFER_POWER, 1};
-    }
-    return colour ? image_colour_transfer(lookup->image) : (struct transfer_function){TRANSFER_UNSTATED, 0};
-}
-
 /* Of the first texture that reads the image. */
 static void warn_of_colours(const struct flattening *f, const struct texture_operation *table, uint32_t index) {
     const struct image *image = table[index].image.image;
@@ -310,7 +295,7 @@ static bool decode_colours(const struct flattening *f, const struct texture_tabl
                              .operation;
         if (operation->kind != TEXTURE_IMAGE)
             continue;
-        struct transfer_function transfer = image_transfer_in(lookup, is_colour);
+        struct transfer_function transfer = texture_image_transfer(lookup, is_colour);
         if (is_colour && lookup->encoding == ENCODING_AUTO && !(lookup->gamma > 0))
             warn_of_colours(f, tables->operations, i);
         lookup->image = image_decode(lookup->image, transfer, f->error);
