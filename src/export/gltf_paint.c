@@ -298,24 +298,6 @@ static bool add_picture(const struct gltf_painter *p, const struct png_source *s
     return ok;
 }
 
-/* What the numbers of a picture mean. */
-static struct transfer_function transfer_of(const struct gltf_painter *p, const struct texture_image *image) {
-    const struct transfer_function light = {.kind = TRANSFER_POWER, .exponent = 1};
-    if (!p->linear)
-        return srgb;
-    if (image->gamma > 0)
-        return (struct transfer_function){.kind = TRANSFER_POWER, .exponent = image->gamma};
-    switch (image->encoding) {
-    case ENCODING_AUTO:
-        return image_colour_transfer(image->image);
-    case ENCODING_SRGB:
-        return srgb;
-    case ENCODING_LINEAR:
-        break;
-    }
-    return light;
-}
-
 struct copy {
     const struct image *image;
     struct transfer_function transfer;
@@ -336,7 +318,7 @@ static void copy_row(void *context, uint32_t y, uint8_t *line) {
 /* Of several textures with the picture, one is copied. */
 static bool copy_image(const struct gltf_painter *p, const struct texture_image *image, bool is_colour,
                        uint32_t *view) {
-    struct copy copy = {.image = image->image, .transfer = transfer_of(p, image)};
+    struct copy copy = {.image = image->image, .transfer = p->linear ? texture_image_transfer(image, true) : srgb};
     copy.same = !is_colour || (copy.transfer.kind == TRANSFER_SRGB && image_bits(image->image) == 8);
     const struct png_source source = {.width = image_width(image->image),
                                       .height = image_height(image->image),

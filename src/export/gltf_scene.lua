@@ -43,7 +43,7 @@ end
 local function json(value)
     local kind = type(value)
     if kind == 'number' then return number_text(value) end
-    if kind == 'string' then return quote(value) end
+    if kind == 'string' then return (quote(value)) end
     if kind == 'boolean' then return tostring(value) end
     local parts, keys = {}, {}
     for k, entry in ipairs(value) do parts[k] = json(entry) end
@@ -98,6 +98,20 @@ end
 
 local function length(a)
     return sqrt(dot(a, a))
+end
+
+local function normalized(a)
+    return scaled(a, 1 / length(a))
+end
+
+-- The map of a node that looks along -z, with y upwards.
+local function looking(from, along, up)
+    local z = normalized(scaled(along, -1.0))
+    local x = cross(normalized(up), z)
+    if length(x) <= 1e-9 then x = cross(abs(z[1]) < .7 and {1, 0, 0} or {0, 1, 0}, z) end
+    x = normalized(x)
+    local y = cross(z, x)
+    return {x[1], y[1], z[1], from[1], x[2], y[2], z[2], from[2], x[3], y[3], z[3], from[3]}
 end
 
 local function compose(outer, inner)
@@ -356,13 +370,17 @@ local function mesh_of(primitive)
     for _, kind in ipairs {'base', 'rough', 'emission', 'normal'} do
         baked[kind] = surface[kind] and add_texture(surface[kind])
     end
+    local done = {}
     for _, index in ipairs(surface.materials) do
-        local material, uses = add_material(index, surface, baked)
-        local attributes = {POSITION = add_accessor(attribute 'POSITION')}
-        for _, kind in ipairs {'NORMAL', 'TEXCOORD_0', 'TANGENT', 'COLOR_0'} do
-            attributes[kind] = uses[kind] and add_accessor(attribute(kind)) or nil
+        if not done[index] then
+            done[index] = true
+            local material, uses = add_material(index, surface, baked)
+            local attributes = {POSITION = add_accessor(attribute 'POSITION')}
+            for _, kind in ipairs {'NORMAL', 'TEXCOORD_0', 'TANGENT', 'COLOR_0'} do
+                attributes[kind] = uses[kind] and add_accessor(attribute(kind)) or nil
+            end
+            primitives[#primitives + 1] = {attributes = attributes, indices = add_accessor(indices(index)), material = material}
         end
-        primitives[#primitives + 1] = {attributes = attributes, indices = add_accessor(indices(index)), material = material}
     end
     meshes[key] = #primitives > 0 and add('meshes', {name = surface.name, primitives = primitives})
     return meshes[key], unit
@@ -457,24 +475,24 @@ end
 -- As the file has it: kind, strength and direction; nil: it is left out.
 local function punctual_of(light)
     local kind, across = light.kind, cross(light.edge1, light.edge2)
-    if kind == 'mesh' then
+    if kind == 'mesh light' then
         lack 'the light of a mesh is left out; its surface emits it'
-    elseif kind == 'sky' then
+    elseif kind == 'sky light' then
         lack 'the light of the sky is left out'
-    elseif kind == 'point' then
-        return kind, strength_of(light), {0, -1, 0}
-    elseif kind == 'directional' then
-        return kind, 1, light.direction
-    elseif kind == 'spot' then
+    elseif kind == 'point light' then
+        return 'point', strength_of(light), {0, -1, 0}
+    elseif kind == 'directional light' then
+        return 'directional', 1, light.direction
+    elseif kind == 'spot light' then
         light.outer = min(light.outer, pi / 2)
         light.inner = min(light.inner, 0.9999 * light.outer)
-        return kind, strength_of(light), light.direction
+        return 'spot', strength_of(light), light.direction
     else
         lack 'a light with an extent is a point in its middle'
         if not light.emissive then return 'point', strength_of(light), {0, -1, 0} end
         light.inner, light.outer = 0, pi / 2
-        local is_spot, area = light.one_sided and kind ~= 'sphere', kind == 'parallelogram' and length(across) / pi
-        local along = kind == 'sphere' and {0, -1, 0} or kind == 'disc' and light.direction or across
+        local is_spot, area = light.one_sided and kind ~= 'spherical light', kind == 'area light' and length(across) / pi
+        local along = kind == 'spherical light' and {0, -1, 0} or kind == 'disc light' and light.direction or across
         return is_spot and 'spot' or 'point', area or light.radius * light.radius, along
     end
 end

@@ -200,9 +200,6 @@ static void ring_at(const void *context, double u, double v, struct vec3 *point,
     *point = vec3_add_scaled(p->origin, circle_at(u == 1 ? 0 : u, p->u, p->v), p->inner * v + 1 - v);
 }
 
-struct edge {
-    double low[2], high[2]; /* a and b of its ends */
-};
 struct slab_crossing {
     double low, high; /* a at the two ends of a slab */
 };
@@ -218,21 +215,22 @@ static int by_middle(const void *left, const void *right) {
     return (x > y) - (x < y);
 }
 
-static double along_edge(const struct edge *edge, double b) {
-    double share = (b - edge->low[1]) / (edge->high[1] - edge->low[1]);
-    return edge->low[0] + share * (edge->high[0] - edge->low[0]);
-}
-
 /* Between two levels of b next to each other, the outlines are lines: the even ones begin trapezoids. */
-static bool add_slab(struct gltf_surface *s, const struct planar *p, const struct list *edges, const double levels[2]) {
-    const struct edge *edge = edges->items;
+static bool add_slab(struct gltf_surface *s, const struct planar *p, const double levels[2]) {
     struct list found = {0};
+    const double(*points)[2];
+    uint32_t count;
     bool ok = true;
-    for (size_t i = 0; ok && i < edges->count; i++) {
-        struct slab_crossing at = {along_edge(&edge[i], levels[0]), along_edge(&edge[i], levels[1])};
-        if (edge[i].low[1] <= levels[0] && edge[i].high[1] >= levels[1])
-            ok = list_add(&found, &at, 1, sizeof at);
-    }
+    for (uint32_t outline = 0; (points = planar_outline(p, outline, &count)); outline++)
+        for (uint32_t i = 0; ok && i < count; i++) {
+            const double *next = points[(i + 1) % count], *low = points[i][1] < next[1] ? points[i] : next,
+                         *high = low == next ? points[i] : next;
+            const double slope = (high[0] - low[0]) / (high[1] - low[1]);
+            const struct slab_crossing at = {low[0] + (levels[0] - low[1]) * slope,
+                                             low[0] + (levels[1] - low[1]) * slope};
+            if (low[1] <= levels[0] && high[1] >= levels[1])
+                ok = list_add(&found, &at, 1, sizeof at);
+        }
     const struct slab_crossing *at = found.items;
     if (found.count > 1)
         qsort(found.items, found.count, sizeof *at, by_middle);
@@ -247,24 +245,18 @@ static bool add_slab(struct gltf_surface *s, const struct planar *p, const struc
 }
 
 static bool add_polygon(struct gltf_surface *s, const struct planar *p) {
-    struct list edges = {0}, levels = {0};
+    struct list levels = {0};
+    const double(*points)[2];
     uint32_t count;
     bool ok = true;
-    for (uint32_t outline = 0; planar_outline(p, outline, &count); outline++) {
-        const double(*points)[2] = planar_outline(p, outline, &count);
-        for (uint32_t i = 0; ok && i < count; i++) {
-            const double *a = points[i], *b = points[(i + 1) % count];
-            const struct edge edge = {{a[1] < b[1] ? a[0] : b[0], math_min(a[1], b[1])},
-                                      {a[1] < b[1] ? b[0] : a[0], math_max(a[1], b[1])}};
-            ok = list_add(&levels, &a[1], 1, sizeof *a) && (a[1] == b[1] || list_add(&edges, &edge, 1, sizeof edge));
-        }
-    }
+    for (uint32_t outline = 0; (points = planar_outline(p, outline, &count)); outline++)
+        for (uint32_t i = 0; ok && i < count; i++)
+            ok = list_add(&levels, &points[i][1], 1, sizeof(double));
     double *level = levels.items;
     if (levels.count > 1)
         qsort(level, levels.count, sizeof *level, by_number);
     for (size_t i = 0; ok && i + 1 < levels.count; i++)
-        ok = level[i] == level[i + 1] || add_slab(s, p, &edges, &level[i]);
-    list_destroy(&edges);
+        ok = level[i] == level[i + 1] || add_slab(s, p, &level[i]);
     list_destroy(&levels);
     return ok;
 }

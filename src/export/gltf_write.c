@@ -78,29 +78,6 @@ static int node_spin(lua_State *L) {
     return 1;
 }
 
-static struct vec3 vector_at(lua_State *L, int index) {
-    double x[3];
-    for (int k = 0; k < 3; k++) {
-        lua_rawgeti(L, index, k + 1);
-        x[k] = lua_tonumber(L, -1);
-        lua_pop(L, 1);
-    }
-    return vec3_make(x[0], x[1], x[2]);
-}
-
-/* From, along, up: the map of a node that looks along -z, with y upwards. */
-static int looking(lua_State *L) {
-    struct vec3 from = vector_at(L, 1), z = vec3_normalize(vec3_negate(vector_at(L, 2))),
-                x = vec3_cross(vec3_normalize(vector_at(L, 3)), z), other;
-    if (vec3_max_abs(x) > 1e-9)
-        x = vec3_normalize(x);
-    else
-        frame_tangents(z, &x, &other);
-    struct vec3 y = vec3_cross(z, x);
-    push_map(L, &(struct affine){{{x.x, y.x, z.x, from.x}, {x.y, y.y, z.y, from.y}, {x.z, y.z, z.z, from.z}}});
-    return 1;
-}
-
 /* --- the tree --- */
 
 /* The next event of the traversal: its word, the depth, and a table about the node. */
@@ -179,24 +156,17 @@ static bool make_surface(struct gltf_scene *scene, uint32_t primitive) {
             gltf_paint_make(&scene->painter, primitive, &scene->surface, &scene->paint, scene->error));
 }
 
-/* Sets the list of the materials in the order of their first triangles. */
+/* Sets the list of the materials in the order of their triangles; one may stand there several times. */
 static void set_materials(lua_State *L, const struct gltf_surface *surface) {
-    const struct gltf_triangle *triangles = gltf_triangles(surface);
+    uint32_t last = GLTF_NONE;
     lua_newtable(L);
-    lua_newtable(L); /* the known ones */
     for (size_t i = 0; i < surface->triangles.count; i++) {
-        const uint32_t material = triangles[i].material;
-        if (i > 0 && material == triangles[i - 1].material)
+        const uint32_t material = gltf_triangles(surface)[i].material;
+        if (material == last)
             continue;
-        if (lua_rawgeti(L, -1, material) == LUA_TNIL) {
-            lua_pushinteger(L, material);
-            lua_pushvalue(L, -1);
-            lua_rawseti(L, -4, material);
-            lua_rawseti(L, -4, (lua_Integer)lua_rawlen(L, -4) + 1);
-        }
-        lua_pop(L, 1);
+        lua_pushinteger(L, last = material);
+        lua_rawseti(L, -2, (lua_Integer)lua_rawlen(L, -2) + 1);
     }
-    lua_pop(L, 1);
     lua_setfield(L, -2, "materials");
 }
 
@@ -332,17 +302,7 @@ static void set_camera(lua_State *L, const struct gltf_moment *moment) {
 
 /* A table about the next light of the world. */
 static int next_light(lua_State *L) {
-    static const char *const kinds[] = {[LIGHT_POINT] = "point",
-                                        [LIGHT_DIRECTIONAL] = "directional",
-                                        [LIGHT_SPOT] = "spot",
-                                        [LIGHT_DISC] = "disc",
-                                        [LIGHT_PARALLELOGRAM] = "parallelogram",
-                                        [LIGHT_SPHERE] = "sphere",
-                                        [LIGHT_MESH] = "mesh",
-                                        [LIGHT_SKY] = "sky"};
-    static const char *const attenuations[] = {[ATTENUATION_COEFFICIENTS] = "coefficients",
-                                               [ATTENUATION_RANGE] = "range",
-                                               [ATTENUATION_INVERSE_SQUARE] = "square"};
+    static const char *const kinds[] = {LIGHT_KINDS(LIST_WORD)}, *const attenuations[] = {ATTENUATIONS(LIST_WORD)};
     struct gltf_scene *scene = scene_of(L);
     struct light_target middle;
     if (scene->next_light == scene->moment->world->light_count)
@@ -379,20 +339,6 @@ static int arc_tangent(lua_State *L) {
     return 1;
 }
 
-/* A string of JSON, with its quotes. */
-static int quote(lua_State *L) {
-    const char *text = lua_tostring(L, 1);
-    char piece[JSON_PIECE];
-    luaL_Buffer out;
-    luaL_buffinit(L, &out);
-    luaL_addchar(&out, '"');
-    for (size_t taken; *text; text += taken)
-        luaL_addlstring(&out, piece, json_piece(text, piece, &taken));
-    luaL_addchar(&out, '"');
-    luaL_pushresult(&out);
-    return 1;
-}
-
 static int warn_of(lua_State *L) {
     scene_of(L)->warn(scene_of(L)->context, lua_tostring(L, 1));
     return 0;
@@ -423,10 +369,11 @@ static const char *read_line(lua_State *L, void *lines, size_t *size) {
 
 static int open_state(lua_State *L) {
     static const luaL_Reg helpers[] = {
-        {"node_map", node_map}, {"node_spin", node_spin},   {"looking", looking},         {"visit", visit},
-        {"mesh_key", mesh_key}, {"surface_of", surface_of}, {"material_of", material_of}, {"attribute", attribute},
-        {"indices", indices},   {"floats", floats},         {"next_light", next_light},   {"atan2", arc_tangent},
-        {"quote", quote},       {"buffer", buffer},         {"warn_of", warn_of},         {NULL, NULL}};
+        {"node_map", node_map},     {"node_spin", node_spin},   {"visit", visit},
+        {"mesh_key", mesh_key},     {"surface_of", surface_of}, {"material_of", material_of},
+        {"attribute", attribute},   {"indices", indices},       {"floats", floats},
+        {"next_light", next_light}, {"atan2", arc_tangent},     {"quote", json_quote},
+        {"buffer", buffer},         {"warn_of", warn_of},       {NULL, NULL}};
     const char *const *lines = gltf_scene_lua;
     luaL_openlibs(L);
     lua_pushglobaltable(L);

@@ -42,7 +42,11 @@ enum { LIGHT_KIND_COUNT = LIST_COUNT(LIGHT_KINDS) };
 #define LIGHT_NONE UINT32_MAX /* instead of a light's number */
 
 /* COEFFICIENTS: 1 / (c0 + c1 d + c2 d^2); RANGE: 1 - d / range, 0 beyond; INVERSE_SQUARE: intensity / d^2. */
-enum light_attenuation { ATTENUATION_COEFFICIENTS, ATTENUATION_RANGE, ATTENUATION_INVERSE_SQUARE };
+#define ATTENUATIONS(X)                                                                                                \
+    X(ATTENUATION_COEFFICIENTS, "coefficients")                                                                        \
+    X(ATTENUATION_RANGE, "range")                                                                                      \
+    X(ATTENUATION_INVERSE_SQUARE, "square")
+enum light_attenuation { ATTENUATIONS(LIST_MEMBER) };
 
 struct arena;
 struct error;
