@@ -115,13 +115,12 @@ static void locate(const struct sandbox *sandbox, char *out, size_t size) {
         (void)snprintf(out, size, "%s%s: ", position, argument + (position[0] == '\0' && argument[0] == '.'));
 }
 
-_Noreturn static void fail_unknown(struct scene_reader *r, const char *what, const char *name,
-                                   const struct suggestion *suggestion) {
-    struct sandbox *sandbox = sandbox_enter(r->L);
-    if (suggestion->best)
-        sandbox_raise(sandbox, "%s '%.100s' does not exist; did you mean '%s'?", what, name, suggestion->best);
-    sandbox_raise(sandbox, "%s '%.100s' does not exist; near it are %s, %s and %s", what, name, suggestion->near[0],
-                  suggestion->near[1], suggestion->near[2]);
+#define FAIL(r, ...) sandbox_raise(sandbox_enter((r)->L), __VA_ARGS__)
+
+_Noreturn static void fail_unknown(struct scene_reader *r, const char *what, const struct suggestion *s) {
+    if (s->best)
+        FAIL(r, "%s '%.100s' does not exist; did you mean '%s'?", what, s->word, s->best);
+    FAIL(r, "%s '%.100s' does not exist; near it are %s, %s and %s", what, s->word, s->near[0], s->near[1], s->near[2]);
 }
 
 /* --- values --- */
@@ -155,8 +154,7 @@ static void check_type(struct scene_reader *r, const struct script_function *fun
         const struct script_parameter *p = &function->parameters[k];
         bool is_node = p->kind == KIND_NODE;
         if ((is_node || p->kind == KIND_MATERIAL) && strcmp(p->name, key) == 0)
-            sandbox_raise(sandbox_enter(r->L), "it must have a type, as in {\"type\": \"%s\"}",
-                          is_node ? "sphere" : "material");
+            FAIL(r, "it must have a type, as in {\"type\": \"%s\"}", is_node ? "sphere" : "material");
     }
 }
 
@@ -182,30 +180,14 @@ static void push_fields(struct scene_reader *r, const struct script_function *fu
     }
 }
 
-/* Whether a function makes what a scene consists of. */
-static bool makes_object(const struct script_function *function) {
-    switch (function->result) {
-    case RESULT_NODE:
-    case RESULT_MATERIAL:
-    case RESULT_LIGHT:
-    case RESULT_TEXTURE:
-    case RESULT_FOG:
-    case RESULT_MEDIUM:
-    case RESULT_SKY:
-        return true;
-    case RESULT_NOTHING:
-    case RESULT_SELF:
-    case RESULT_BOUNDS:
-    case RESULT_FACES:
-    case RESULT_GLYPHS:
-    case RESULT_FRAMES:
-        return false;
-    }
-    return false;
-}
-
-static bool is_object_or_method(const struct script_function *function, enum function_owner owner) {
-    return function->owner == owner && (owner == OWNER_GR ? makes_object(function) : function->result == RESULT_SELF);
+/* Whether a file may name it: it makes what a scene consists of, or it is a method that changes its node. */
+static bool may_be_named(const struct script_function *function, enum function_owner owner) {
+    enum {
+        OBJECTS = 1 << RESULT_NODE | 1 << RESULT_MATERIAL | 1 << RESULT_LIGHT | 1 << RESULT_TEXTURE | 1 << RESULT_FOG |
+                  1 << RESULT_MEDIUM | 1 << RESULT_SKY
+    };
+    return function->owner == owner &&
+           (owner == OWNER_GR ? OBJECTS >> function->result & 1 : function->result == RESULT_SELF);
 }
 
 /* Pushes the function, too. */
@@ -216,9 +198,9 @@ static const struct script_function *find_function(struct scene_reader *r, enum 
     struct suggestion suggestion;
     suggest_begin(&suggestion, name);
     for (int k = 0; k < function_count(); k++)
-        if (is_object_or_method(function_at(k), owner))
+        if (may_be_named(function_at(k), owner))
             suggest_offer(&suggestion, function_at(k)->name);
-    fail_unknown(r, owner == OWNER_GR ? "the type" : "the method", name, &suggestion);
+    fail_unknown(r, owner == OWNER_GR ? "the type" : "the method", &suggestion);
 }
 
 /* Calls a method of the node on top: a list has its arguments, a table its fields, and else it is the argument. */
@@ -234,7 +216,7 @@ static void call_method(struct scene_reader *r, const char *name, const json_t *
         enum { ARGUMENTS = 8 };
         count = (int)json_array_size(value);
         if (count > ARGUMENTS)
-            sandbox_raise(sandbox_enter(L), "a method has at most %d arguments", ARGUMENTS);
+            FAIL(r, "a method has at most %d arguments", ARGUMENTS);
         for (int i = 0; i < count; i++)
             push_entry(r, (size_t)i, json_array_get(value, (size_t)i));
     } else if (json_is_object(value) && !is_call(value)) {
@@ -252,10 +234,10 @@ static void push_node(struct scene_reader *r, const json_t *list, size_t index) 
     push_value(r, json);
     const struct handle *handle = handle_at(r->L, -1);
     if (!handle || handle->type != HANDLE_NODE)
-        sandbox_raise(sandbox_enter(r->L), "it must be a node, such as {\"type\": \"sphere\"}, not %s",
-                      json_is_array(json)               ? "a list"
-                      : json_is_object(json) && !handle ? "an object without a type"
-                                                        : value_words(r->L, -1));
+        FAIL(r, "it must be a node, such as {\"type\": \"sphere\"}, not %s",
+             json_is_array(json)               ? "a list"
+             : json_is_object(json) && !handle ? "an object without a type"
+                                               : value_words(r->L, -1));
     r->path_end--;
 }
 
@@ -264,7 +246,7 @@ static void add_children(struct scene_reader *r, const char *key, const json_t *
     lua_State *L = r->L;
     enter(r, key, 0);
     if (!json_is_array(children))
-        sandbox_raise(sandbox_enter(L), "it must be a list of nodes");
+        FAIL(r, "it must be a list of nodes");
     for (size_t i = 0; i < json_array_size(children); i++) {
         lua_pushvalue(L, r->add_child);
         lua_pushvalue(L, -2);
@@ -277,13 +259,13 @@ static void add_children(struct scene_reader *r, const char *key, const json_t *
 static void transform(struct scene_reader *r, const json_t *calls) {
     enter(r, "transform", 0);
     if (!json_is_array(calls))
-        sandbox_raise(sandbox_enter(r->L), "it must be a list such as [{\"translate\": [1, 0, 0]}]");
+        FAIL(r, "it must be a list such as [{\"translate\": [1, 0, 0]}]");
     for (size_t i = 0; i < json_array_size(calls); i++) {
         json_t *call = json_array_get(calls, i);
         void *at = json_is_object(call) ? json_object_iter(call) : NULL;
         enter(r, NULL, i);
         if (!at || json_object_size(call) != 1)
-            sandbox_raise(sandbox_enter(r->L), "it must be an object with one method, as {\"translate\": [1, 0, 0]}");
+            FAIL(r, "it must be an object with one method, as {\"translate\": [1, 0, 0]}");
         call_method(r, json_object_iter_key(at), json_object_iter_value(at));
         r->path_end--;
     }
@@ -313,7 +295,7 @@ static void push_reference(struct scene_reader *r, const char *name) {
     if (lua_isuserdata(L, -1))
         return;
     if (!lua_isnil(L, -1))
-        sandbox_raise(sandbox_enter(L), "'%.100s' would be a part of itself", name);
+        FAIL(r, "'%.100s' would be a part of itself", name);
     if (!json) {
         struct suggestion suggestion;
         const char *key;
@@ -321,8 +303,8 @@ static void push_reference(struct scene_reader *r, const char *name) {
         suggest_begin(&suggestion, name);
         json_object_foreach(r->defined, key, value) suggest_offer(&suggestion, key);
         if (suggestion.best)
-            fail_unknown(r, "the name", name, &suggestion);
-        sandbox_raise(sandbox_enter(L), "the name '%.100s' is not in define", name);
+            fail_unknown(r, "the name", &suggestion);
+        FAIL(r, "the name '%.100s' is not in define", name);
     }
     lua_pushboolean(L, 1);
     lua_setfield(L, r->made, name);
@@ -332,7 +314,7 @@ static void push_reference(struct scene_reader *r, const char *name) {
     enter(r, "define", 0);
     enter(r, name, 0);
     if (!is_call(json))
-        sandbox_raise(sandbox_enter(L), "it must be an object with a type, such as {\"type\": \"sphere\"}");
+        FAIL(r, "it must be an object with a type, such as {\"type\": \"sphere\"}");
     push_value(r, json);
     r->path_end = r->path_start;
     r->path_start = start;
@@ -344,19 +326,19 @@ static void push_value(struct scene_reader *r, const json_t *json) {
     static const char *const none[] = {NULL};
     lua_State *L = r->L;
     if (++r->depth > DEPTH)
-        sandbox_raise(sandbox_enter(L), "more than %d values are in each other", DEPTH);
+        FAIL(r, "more than %d values are in each other", DEPTH);
     luaL_checkstack(L, 20, NULL);
     switch (json_typeof(json)) {
     case JSON_OBJECT: {
         const json_t *ref = json_object_get(json, "ref"), *type = json_object_get(json, "type");
         if (json_is_string(ref) && json_object_size(json) > 1)
-            sandbox_raise(sandbox_enter(L), "an object with ref has no other fields");
+            FAIL(r, "an object with ref has no other fields");
         else if (json_is_string(ref))
             push_reference(r, json_string_value(ref));
         else if (json_is_string(type))
             push_object(r, json, json_string_value(type));
         else if (type || ref)
-            sandbox_raise(sandbox_enter(L), "type and ref must be words, as in {\"type\": \"sphere\"}");
+            FAIL(r, "type and ref must be words, as in {\"type\": \"sphere\"}");
         else
             push_fields(r, NULL, json, none);
         break;
@@ -378,7 +360,7 @@ static void push_value(struct scene_reader *r, const json_t *json) {
         lua_pushboolean(L, json_is_true(json));
         break;
     case JSON_NULL:
-        sandbox_raise(sandbox_enter(L), "null is no value; leave the field out");
+        FAIL(r, "null is no value; leave the field out");
     }
     r->depth--;
 }
@@ -408,7 +390,7 @@ static void check_top(struct scene_reader *r, const json_t *root) {
         if (!known && has_parameter(function_find(OWNER_GR, "render"), key, strlen(key)))
             sandbox_raise(sandbox, "the field '%s' belongs in picture", key);
         if (!known)
-            fail_unknown(r, "the field", key, &suggestion);
+            fail_unknown(r, "the field", &suggestion);
     }
     if (define && !json_is_object(define))
         sandbox_raise(sandbox, "define: it must be an object, {\"NAME\": {\"type\": ...}}");
@@ -472,7 +454,7 @@ static void render(struct scene_reader *r, const json_t *root) {
     push_root(r, json_object_get(root, "nodes"));
     enter(r, "picture", 0);
     if (!function || !function_renders(function))
-        sandbox_raise(sandbox_enter(L), "the type must be \"render\", \"render_skybox\" or \"light_field\"");
+        FAIL(r, "the type must be \"render\", \"render_skybox\" or \"light_field\"");
     if (picture)
         push_fields(r, function, picture, own);
     else
@@ -513,7 +495,7 @@ void scene_json_run(lua_State *L) {
         lua_newtable(L);
         reader.calls[owner] = lua_gettop(L);
         for (int k = 0; k < function_count(); k++) {
-            if (!is_object_or_method(function_at(k), (enum function_owner)owner))
+            if (!may_be_named(function_at(k), (enum function_owner)owner))
                 continue;
             dispatch_push(L, function_at(k));
             lua_setfield(L, -2, function_at(k)->name);
