@@ -4,11 +4,13 @@ neighbours by more than four standard deviations of these neighbours plus 8 leve
 
 tools/fireflies.py PICTURE [REFERENCE]
 tools/fireflies.py --scene SCRIPT...
+tools/fireflies.py --large SCRIPT...
 
 The reference is a picture of the same size with many samples. An outlier that is also one in the reference is no error.
 With --scene, renders each path-traced scene with the OPTIONS of its first lines. It also renders the surroundings of
-the outliers as a reference, without denoising, with SPP samples (default 4096). GRAY: the program (default ./gray);
-OPTIONS: more options for all renderings. ffmpeg reads the pictures.
+the outliers as a reference, without denoising, with SPP samples (default 4096). --large does so with the picture beside
+the script that tools/gallery.sh has made, and the options LARGE. GRAY: the program (default ./gray); OPTIONS: more
+options for all renderings. ffmpeg reads the pictures.
 Prints each outlier that is an error, and exits with 1 if there is one."""
 import os
 import re
@@ -70,20 +72,24 @@ def render(script, output, options):
         sys.exit(f'{script}: not rendered')
 
 
-def check_scene(script, folder):
+def check_scene(script, folder, large):
     """Whether pixels stand out that do not in the reference."""
     with open(script, encoding='utf-8') as file:
-        own = re.search(r'^-- *OPTIONS: *(.*)$', file.read(), re.M)
+        own = re.search(r'^-- *' + ('LARGE' if large else 'OPTIONS') + ': *(.*)$', file.read(), re.M)
+    options = own.group(1).split() if own else []
     picture, part, cells, left = folder + '/picture.png', folder + '/part.png', {}, []
-    render(script, picture, own.group(1).split() if own else [])
+    if large:
+        picture = script[:-len('.lua')] + '.png'
+    else:
+        render(script, picture, options)
     found = outliers(*read_png(picture))
     for x, y in found:
         cells.setdefault((x // CELL, y // CELL), []).append((x, y))
     for pixels in cells.values():
         x0, y0 = min(x for x, _ in pixels) - 1, min(y for _, y in pixels) - 1
         size = max(x for x, _ in pixels) + 2 - x0, max(y for _, y in pixels) + 2 - y0
-        render(script, part, ['--denoise=none', '--spp', os.environ.get('SPP', '4096'), '--seed', '1', '--crop',
-                              f'{x0},{y0},{size[0]},{size[1]}'])
+        render(script, part, [*options, '--denoise=none', '--spp', os.environ.get('SPP', '4096'), '--seed', '1',
+                              '--crop', f'{x0},{y0},{size[0]},{size[1]}'])
         truth = read_png(part)[2]
         left += [(x, y) for x, y in pixels if not is_outlier(truth, x - x0, y - y0)]
     print(f'{script}: {len(found)} pixels stand out, {len(left)} of them not in the reference', flush=True)
@@ -91,9 +97,9 @@ def check_scene(script, folder):
 
 
 def main():
-    if len(sys.argv) > 2 and sys.argv[1] == '--scene':
+    if len(sys.argv) > 2 and sys.argv[1] in ('--scene', '--large'):
         with tempfile.TemporaryDirectory() as folder:
-            bad = [script for script in sys.argv[2:] if check_scene(script, folder)]
+            bad = [script for script in sys.argv[2:] if check_scene(script, folder, sys.argv[1] == '--large')]
         sys.exit(1 if bad else 0)
     if len(sys.argv) not in (2, 3) or sys.argv[1].startswith('-'):
         sys.exit(__doc__)
