@@ -1,6 +1,6 @@
 -- TITLE: The end game
 -- OPTIONS: --size 400x250 --spp 12
--- LARGE: --spp 64
+-- LARGE: --spp 96
 -- Turned pieces of box and rosewood late in a game: white has a rook and two pawns, black a bishop and hope. Grain follows the
 -- axis of the lathe, edges are worn pale or dark, felt is below; evening sun comes through a window with bars.
 local patterns, random = require 'patterns', require 'random'
