@@ -30,7 +30,7 @@ local function front(colour, warm, tower)
         emission_color = function(p, s)
             local pane, fu, fv, cell = window(p, s)
             local id = gr.hash(cell + gr.vec(.5, .5, .5))
-            local on = gr.step(gr.where(cell.y - .5, .66, .15), id)
+            local on = gr.step(gr.where(cell.y - .5, .66, .35), id)
             local tone = gr.hash(cell + gr.vec(7.5, 3.5, .5))
             local room = .55 + .45 * gr.noise(fu * 3 + 10 * tone, fv * 4, 9 * id)       -- furniture and curtains
             local curtain = 1 - .55 * gr.smoothstep(.16, .10, gr.min(fu - .2, .8 - fu)) * gr.step(.4, tone)
@@ -86,7 +86,7 @@ end
 local street = gr.openpbr_material{specular_ior = 1.33,
     base_color = function(p) return gr.vec(.030, .031, .034) * (1 + .5 * gr.noise(p * 14)) end,
     specular_roughness = function(p) return gr.mix(.26, .025, wet(p)) end,
-    geometry_normal = gr.bump(function(p) return (1 - wet(p)) * gr.noise(p * 9) + .25 * gr.noise(p * 2) end, .006)}
+    geometry_normal = gr.bump(function(p) return (1 - wet(p)) * (.22 * gr.noise(p * 40) + .25 * gr.noise(p * 9)) + .07 * gr.noise(p * 2) end, .006)}
 scene:add_child(gr.plane{material = street, normal = {0, 1, 0}})
 for side = -1, 1, 2 do
     scene:add_child(gr.box{material = street, min = {side * 4.35 - .85, -.1, -100}, max = {side * 4.35 + .85, .12, 8}, edge = .03})

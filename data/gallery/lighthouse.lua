@@ -18,7 +18,7 @@ local function ground(x, z)
     return gr.mix(ledge, stepped + .18 * (ledge - stepped), .55 * gr.smoothstep(1.8, 3.5, d))
 end
 local rock = gr.openpbr_material{
-    base_color = function(p) return gr.mix(gr.vec(.085, .075, .065), gr.vec(.030, .028, .027), gr.clamp(gr.turbulence(p * 26, 4), 0, 1)) end,
+    base_color = function(p) return gr.mix(gr.vec(.16, .14, .12), gr.vec(.055, .05, .047), gr.clamp(gr.turbulence(p * 26, 4), 0, 1)) end,
     specular_roughness = function(p) return gr.mix(.22, .6, gr.smoothstep(-.01, .05, p.y)) end,
     geometry_normal = gr.bump(function(p) return gr.turbulence(p * 60, 3) end, .004)}
 scene:add_child(gr.height_field{material = rock, columns = 700, smooth = true, open = true, f = function(p) return ground((p.x - .5) * 26, (p.z - .5) * 26) / 26 end}
@@ -92,5 +92,5 @@ local aim = gr.vec(.96, -.05, .22):normalize()
 gr.render{node = scene, file = 'lighthouse.png', width = 1200, height = 1500, eye = {-4.2, 2.1, 25}, target = {.35, 6.2, 0}, fov = 36,
     integrator = 'path', denoise = true, tone = 'filmic', exposure = 1.7, clamp = 2.5, max_depth = 6, vignette = .2, background = sky,
     medium = gr.medium{albedo = {.92, .94, .96}, distance = 55, g = .5, top = 21},
-    lights = {gr.spot_light{position = gr.vec(lamp) + aim * .26, direction = aim, colour = {1, .88, .66}, outer = 6.5, intensity = 5600},
-        gr.spot_light{position = gr.vec(lamp) - aim * .26, direction = -aim, colour = {1, .88, .66}, outer = 6.5, intensity = 5600}, gr.sky_light{sky = sky}}}
+    lights = {gr.spot_light{position = gr.vec(lamp) + aim * .26, direction = aim, colour = {1, .88, .66}, outer = 6.5, intensity = 4200},
+        gr.spot_light{position = gr.vec(lamp) - aim * .26, direction = -aim, colour = {1, .88, .66}, outer = 6.5, intensity = 4200}, gr.sky_light{sky = sky}}}

@@ -75,7 +75,7 @@ scene:add_child(gr.union(parts))
 
 -- eyes: gold with a slit
 local eye = gr.openpbr_material{specular_roughness = .04, coat_weight = 1, base_color = function(p)
-    local slit = gr.smoothstep(.030, .022, gr.max(p.y, -p.y)) * gr.smoothstep(.105, .09, gr.max(p.x, -p.x))
+    local slit = gr.smoothstep(1, .85, gr.length(gr.vec(p.x / .105, p.y / .034, 0)))
     local iris = gr.mix(gr.vec(.75, .48, .10), gr.vec(.35, .12, .02), gr.turbulence(p * 14, 3))
     return gr.mix(gr.mix(iris, gr.vec(.04, .02, .015), gr.smoothstep(.115, .15, gr.length(gr.vec(p.x, p.y, 0)))), gr.vec(.004, .004, .006), slit)
 end}

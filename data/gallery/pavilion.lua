@@ -77,14 +77,14 @@ birch(-6.8, -4.5, 8, .3) birch(7.6, -7, 8.5, -.3) birch(1.6, -8.5, 8.5, .2) birc
 -- someone on the way to the door: a coat, a red scarf, a cap
 local wool = gr.openpbr_material{base_color = {.05, .045, .05}, fuzz_weight = .5, fuzz_color = {.3, .28, .3}, specular_weight = .1}
 local scarf = gr.openpbr_material{base_color = {.55, .03, .02}, fuzz_weight = .5, specular_weight = .1}
-local skin = gr.openpbr_material{base_color = {.55, .36, .27}}
+local hair = gr.openpbr_material{base_color = {.09, .05, .03}, fuzz_weight = .3, fuzz_color = {.4, .25, .15}, specular_weight = .3}
 local walker = gr.node 'walker'
 local coat = sdf.smooth_union(.05, sdf.capsule({0, .30, 0}, {0, .78, -.02}, .185, .095), sdf.capsule({-.10, .815, -.02}, {.10, .815, -.02}, .055),
     sdf.capsule({.15, .80, -.02}, {.205, .48, .05}, .048, .042), sdf.capsule({-.15, .80, -.02}, {-.205, .49, -.09}, .048, .042))
 walker:add_child(gr.implicit{material = wool, radius = .8, centre = {0, .5, 0}, f = sdf.union(sdf.intersection(coat, sdf.plane({0, -1, 0}, -.26)),
     sdf.capsule({.075, .05, .10}, {.07, .4, .02}, .042, .06), sdf.capsule({-.07, .05, -.15}, {-.065, .4, 0}, .042, .06),
     sdf.capsule({.075, .03, .12}, {.08, .03, .0}, .045), sdf.capsule({-.07, .03, -.13}, {-.075, .03, -.25}, .045))})
-walker:add_child(gr.sphere{material = skin, centre = {0, .99, -.03}, radius = .075})
+walker:add_child(gr.sphere{material = hair, centre = {0, .99, -.03}, radius = .075})
 walker:add_child(gr.ellipsoid{material = wool, centre = {0, 1.03, -.015}, radii = {.085, .062, .085}})
 walker:add_child(gr.torus(scarf, .065, .035):translate(0, .885, -.02))
 walker:add_child(gr.sweep(scarf, {{.05, .88, .05}, {.08, .78, .12}, {.07, .66, .14}}, {.03, .032, .028}))
