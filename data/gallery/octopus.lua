@@ -1,6 +1,6 @@
 -- TITLE: An octopus at rest
 -- OPTIONS: --size 400x300 --spp 2
--- LARGE: --spp 40
+-- LARGE: --spp 32
 -- The skin scatters light below its surface: arms glow where the lamp is behind them. The animal is one union of sweeps and a
 -- smooth head, so light walks from arm to arm; suckers, eyes, sand and corals are around it. -D seed=3 makes another one.
 -- With --frames 96 --loop it moves its arms.
