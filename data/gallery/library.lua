@@ -1,6 +1,6 @@
 -- TITLE: A library at night
 -- OPTIONS: --size 400x250 --spp 12
--- LARGE: --spp 128
+-- LARGE: --spp 96
 -- Rain on a window, and behind it the light of two lamps on old books. Drops are caps of water that show the room upside down;
 -- some have run down and left their track. The lens is focused on the glass.
 local random, patterns = require 'random', require 'patterns'
