@@ -505,7 +505,7 @@ end
 local function add_lights(root)
     for light in next_light do
         local kind, strength, along = punctual_of(light)
-        if kind and largest(light.colour) > 0 then
+        if kind and largest(light.colour) * strength > 0 then
             if light.has_profile then lack 'the profile of a light is left out' end
             if light.leaves_out then lack 'a light that leaves out nodes lights them, too' end
             local from = kind == 'directional' and {0, 0, 0} or light.middle

@@ -225,11 +225,12 @@ static bool add_slab(struct gltf_surface *s, const struct planar *p, const doubl
         for (uint32_t i = 0; ok && i < count; i++) {
             const double *next = points[(i + 1) % count], *low = points[i][1] < next[1] ? points[i] : next,
                          *high = low == next ? points[i] : next;
+            if (low[1] > levels[0] || high[1] < levels[1])
+                continue;
             const double slope = (high[0] - low[0]) / (high[1] - low[1]);
             const struct slab_crossing at = {low[0] + (levels[0] - low[1]) * slope,
                                              low[0] + (levels[1] - low[1]) * slope};
-            if (low[1] <= levels[0] && high[1] >= levels[1])
-                ok = list_add(&found, &at, 1, sizeof at);
+            ok = list_add(&found, &at, 1, sizeof at);
         }
     const struct slab_crossing *at = found.items;
     if (found.count > 1)
