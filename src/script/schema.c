@@ -2,6 +2,7 @@
 #include "script/schema.h"
 
 #include "base/document.h"
+#include "base/json_write.h"
 #include "sandbox/embedded.h"
 #include "script/scene_json_internal.h"
 #include "script/table_internal.h"
@@ -12,10 +13,10 @@
 extern const char *const schema_lua[];
 
 static int write_schema(lua_State *L) {
-    static const luaL_Reg none[] = {{NULL, NULL}};
+    static const luaL_Reg helpers[] = {{"quote", json_quote}, {NULL, NULL}};
     luaL_openlibs(L);
     embedded_open(L);
-    embedded_run(L, schema_lua, none);
+    embedded_run(L, schema_lua, helpers);
     lua_newtable(L);
     for (int k = 0; k < function_count(); k++) {
         function_push(L, function_at(k));

@@ -69,10 +69,6 @@ local SCHEMA = [==[
 }}
 ]==]
 
-local function quote(text)
-    return '"' .. gsub(text, '["\\]', '\\%0') .. '"'
-end
-
 local function reference(name)
     return format('{"$ref": "#/$defs/%s"}', name)
 end
