@@ -220,9 +220,10 @@ bool function_takes_names(const struct script_function *function);
 bool function_renders(const struct script_function *function);
 /* Reads the next name of a form: false at its end. *index is its parameter. */
 bool form_next(const struct script_function *function, const char **form, int *index, bool *optional);
-/* Pushes its description for Lua of the program: the members of struct script_function, `row`, its address, and its
- * parameters as entries; each has the members of struct script_parameter, `row`, and its flags by their names in lower
- * case. `first`: the entry of the first argument, behind the node of a method. */
+/* Pushes a description for Lua of the program: name, owner ("gr" or "node"), result, whether it renders, `rest`, the
+ * name of the parameter that takes any number of nodes, `row`, its address, and the parameters as entries, the first
+ * argument at `first`, behind the node of a method. Each has name, kind, choices, help, low, high, `row`, and its flags
+ * in lower case. */
 void function_push(lua_State *L, const struct script_function *function);
 /* What the script must pass: "a number", "a colour {r, g, b}". */
 const char *kind_words(enum argument_kind kind);
