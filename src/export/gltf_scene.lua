@@ -488,12 +488,14 @@ local function punctual_of(light)
         light.inner = min(light.inner, 0.9999 * light.outer)
         return 'spot', strength_of(light), light.direction
     else
+        local area = kind == 'area light' and length(across) / pi or light.radius * light.radius
+        if light.emissive and area == 0 then return nil end -- it emits nothing
         lack 'a light with an extent is a point in its middle'
         if not light.emissive then return 'point', strength_of(light), {0, -1, 0} end
         light.inner, light.outer = 0, pi / 2
-        local is_spot, area = light.one_sided and kind ~= 'spherical light', kind == 'area light' and length(across) / pi
+        local is_spot = light.one_sided and kind ~= 'spherical light'
         local along = kind == 'spherical light' and {0, -1, 0} or kind == 'disc light' and light.direction or across
-        return is_spot and 'spot' or 'point', area or light.radius * light.radius, along
+        return is_spot and 'spot' or 'point', area, along
     end
 end
 
@@ -505,7 +507,7 @@ end
 local function add_lights(root)
     for light in next_light do
         local kind, strength, along = punctual_of(light)
-        if kind and largest(light.colour) * strength > 0 then
+        if kind and largest(light.colour) > 0 then
             if light.has_profile then lack 'the profile of a light is left out' end
             if light.leaves_out then lack 'a light that leaves out nodes lights them, too' end
             local from = kind == 'directional' and {0, 0, 0} or light.middle
