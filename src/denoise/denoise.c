@@ -60,8 +60,7 @@ static const struct denoise_regression regressions[REGRESSIONS] = {{DENOISE_WIND
                                                                    {DENOISE_WINDOW, 4, 0, 0.3F, .details = false},
                                                                    {2, 2, 0, 0, .details = true}};
 static const float correction_limit = 0.3F; /* of squared differences to a coarser pixel, in units of its variance */
-static const float support_errors = 2;      /* of pixels that are brighter or darker than all neighbours */
-static const float edge_errors = 1;         /* the same at silhouettes */
+static const float support_errors = 3;      /* of pixels that are brighter or darker than all neighbours */
 static const float same_depth = 0.03F;      /* relative difference of depths on one surface */
 static const float choice_slope = 4;        /* how strongly the candidate with the smallest error is preferred */
 
@@ -491,8 +490,9 @@ static float albedo_of(const struct denoise_pixel *pixel, int c) {
  * than its samples explain: few bright paths in a pixel bring a mean that is hardly larger than its standard error,
  * a detail of the scene is found by many. A pixel that no bright path found has a small error itself, so a dark one
  * must stand out from the errors of its neighbours. A detail of a texture is as bright as its neighbours would be on
- * average with its albedo; neighbours at another depth are not of its texture. At silhouettes extremes are more
- * probable. rows: those around the pixel. */
+ * average with its albedo, give or take the error of this mean of eight; neighbours at another depth are not of its
+ * texture. Among millions of pixels, some have a mean of their few bright paths that is three standard errors too
+ * large. rows: those around the pixel. */
 static float supported_mean(const struct denoise_run *d, const struct denoise_pixel *const rows[3], int c, int x,
                             int y) {
     const struct level *level = d->level;
@@ -520,12 +520,12 @@ static float supported_mean(const struct denoise_run *d, const struct denoise_pi
     }
     /* A pixel between these bounds stays; one beyond them is moved to the bound. */
     float own = fabsf(bounded(rows[1][x].variance[c])), others = variance > own ? variance : own;
-    float errors = d->evidence[at] >= 0 ? edge_errors : support_errors;
-    float high = (a < b ? a : b) - errors * sqrtf(own), low = (a < b ? b : a) + errors * sqrtf(others);
+    float high = (a < b ? a : b) - support_errors * sqrtf(own);
+    float low = (a < b ? b : a) + support_errors * sqrtf(others), of_like = sqrtf(0.125F * variance);
     high = brightest > high ? brightest : high;
-    high = like > high ? like : high;
+    high = like + of_like > high ? like + of_like : high;
     low = darkest < low ? darkest : low;
-    low = like < low ? like : low;
+    low = like - of_like < low ? like - of_like : low;
     return mean > high ? high : mean < low ? low : mean;
 }
 
