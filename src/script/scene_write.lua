@@ -191,9 +191,13 @@ local function survey(roots, nested)
     return uses, list, orders
 end
 
--- The shortest that is read as the same number.
+-- The shortest that is read as the same number. What gr takes is a float, so an integer that none is equal to is written
+-- as the nearest one.
 local function number_text(x)
-    if number_type(x) == 'integer' then return format('%d', x) end
+    if number_type(x) == 'integer' then
+        if x + 0.0 == x then return format('%d', x) end
+        x = x + 0.0
+    end
     if x == 0 then return 1 / x < 0 and '-0.0' or '0' end
     local text = format('%.15g', x) -- of whole numbers below 1e15 all digits
     if tonumber(text) ~= x then text = format('%.16g', x) end
