@@ -479,10 +479,9 @@ static void correct_finer(void *context, uint32_t y, int worker) {
 
 /* --- the last step --- */
 
-static float albedo_of(const struct denoise_pixel *pixel, int c) {
-    const float black = 0.02F;
-    float albedo =
-        0.5F * (bounded(pixel->features[0][DENOISE_ALBEDO + c]) + bounded(pixel->features[1][DENOISE_ALBEDO + c]));
+/* Without noise. */
+static float albedo_at(const struct level *level, int c, size_t at) {
+    const float black = 0.02F, albedo = level->feature[DENOISE_ALBEDO + c][at];
     return albedo > 0 ? albedo + black : black;
 }
 
@@ -491,8 +490,8 @@ static float albedo_of(const struct denoise_pixel *pixel, int c) {
  * a detail of the scene is found by many. A pixel that no bright path found has a small error itself, so a dark one
  * must stand out from the errors of its neighbours. A detail of a texture is as bright as its neighbours would be on
  * average with its albedo, give or take the error of this mean of eight; neighbours at another depth are not of its
- * texture. Among millions of pixels, some have a mean of their few bright paths that is three standard errors too
- * large. rows: those around the pixel. */
+ * texture. Among millions of pixels, some have a mean of their few bright paths that is three standard
+ * errors too large. rows: those around the pixel. */
 static float supported_mean(const struct denoise_run *d, const struct denoise_pixel *const rows[3], int c, int x,
                             int y) {
     const struct level *level = d->level;
@@ -500,7 +499,7 @@ static float supported_mean(const struct denoise_run *d, const struct denoise_pi
     size_t at = pixel_at(level, x, y);
     float a = level->colour[0][c][at], b = level->colour[1][c][at], mean = mean_of_halves(level, c, at);
     float darkest = mean_of_halves(level, c, nearest_at(level, x > 0 ? x - 1 : x + 1, y)), brightest = darkest;
-    float albedo = albedo_of(&rows[1][x], c), like = 0, variance = 0;
+    float albedo = albedo_at(level, c, at), like = 0, around = 0, variance = 0;
     for (int j = -1; j <= 1; j++) {
         for (int i = -1; i <= 1; i++) {
             int qx = clamp_int(x + i, 0, level->width - 1), qy = clamp_int(y + j, 0, level->height - 1);
@@ -508,10 +507,10 @@ static float supported_mean(const struct denoise_run *d, const struct denoise_pi
                 continue;
             size_t q = pixel_at(level, qx, qy);
             float other = mean_of_halves(level, c, q);
-            const struct denoise_pixel *pixel = &rows[1 + j][qx];
             bool same = fabsf(depth[at] - depth[q]) <= same_depth * depth[at];
-            like += 0.125F * other * (same ? albedo / albedo_of(pixel, c) : 1);
-            variance += 0.125F * fabsf(bounded(pixel->variance[c]));
+            around += 0.125F * other;
+            like += 0.125F * other * (same ? albedo / albedo_at(level, c, q) : 1);
+            variance += 0.125F * fabsf(bounded(rows[1 + j][qx].variance[c]));
             if (qx == x && qy == y)
                 continue;
             brightest = other > brightest ? other : brightest;
@@ -521,11 +520,12 @@ static float supported_mean(const struct denoise_run *d, const struct denoise_pi
     /* A pixel between these bounds stays; one beyond them is moved to the bound. */
     float own = fabsf(bounded(rows[1][x].variance[c])), others = variance > own ? variance : own;
     float high = (a < b ? a : b) - support_errors * sqrtf(own);
-    float low = (a < b ? b : a) + support_errors * sqrtf(others), of_like = sqrtf(0.125F * variance);
+    float low = (a < b ? b : a) + support_errors * sqrtf(others);
+    float error = fminf(sqrtf(0.125F * variance), fabsf(like - around));
     high = brightest > high ? brightest : high;
-    high = like + of_like > high ? like + of_like : high;
+    high = like + error > high ? like + error : high;
     low = darkest < low ? darkest : low;
-    low = like - of_like < low ? like - of_like : low;
+    low = like - error < low ? like - error : low;
     return mean > high ? high : mean < low ? low : mean;
 }
 
