@@ -361,6 +361,8 @@ static bool read_positional(struct script_context *c, const struct script_functi
     if (function_renders(function) && is_plain_table(L, slot) && !read_more(c, function, slot++, args))
         return false;
     char fields[256];
+    if (lua_gettop(L) >= slot && c->sandbox.locate) /* a file of data has no habits of old scripts */
+        sandbox_raise(&c->sandbox, "there are arguments after %s", function->parameters[index].name);
     if (lua_gettop(L) >= slot)
         context_warn_once(c, WARNED_EXTRA, "arguments after %s are ignored%s", function->parameters[index].name,
                           table_form_words(function, fields));

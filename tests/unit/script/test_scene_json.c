@@ -52,6 +52,8 @@ TEST(a_mistake_in_json_is_one_line_with_its_position_and_a_suggestion) {
          "x.json: nodes[0].transform[0].rotat: the method 'rotat' does not exist; did you mean 'rotate'?\n"},
         {NODES("{\"type\": \"sphere\", \"transform\": [{\"rotate\": {\"axis\": \"y\"}}]}"),
          "x.json: nodes[0].transform[0].rotate.angle: node:rotate: angle is missing (node 'sphere')\n"},
+        {NODES("{\"type\": \"sphere\", \"transform\": [{\"rotate\": [\"y\", 2, 3]}]}"),
+         "x.json: nodes[0].transform[0].rotate: node:rotate: there are arguments after angle (node 'sphere')\n"},
         {NODES("{\"type\": \"sphere\", \"transform\": {\"rotate\": [\"y\", 2]}}"),
          "x.json: nodes[0].transform: it must be a list such as [{\"translate\": [1, 0, 0]}]\n"},
         {NODES("{\"type\": \"mesh\", \"verts\": [[0, 0, 0], [1, 0]], \"faces\": []}"),
