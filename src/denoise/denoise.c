@@ -490,8 +490,8 @@ static float albedo_at(const struct level *level, int c, size_t at) {
  * a detail of the scene is found by many. A pixel that no bright path found has a small error itself, so a dark one
  * must stand out from the errors of its neighbours. A detail of a texture is as bright as its neighbours would be on
  * average with its albedo, give or take the error of this mean of eight; neighbours at another depth are not of its
- * texture. Among millions of pixels, some have a mean of their few bright paths that is three standard
- * errors too large. rows: those around the pixel. */
+ * texture. Among millions of pixels, some have a mean of their few bright paths that is two standard errors too large.
+ * rows: those around the pixel. */
 static float supported_mean(const struct denoise_run *d, const struct denoise_pixel *const rows[3], int c, int x,
                             int y) {
     const struct level *level = d->level;
@@ -499,7 +499,7 @@ static float supported_mean(const struct denoise_run *d, const struct denoise_pi
     size_t at = pixel_at(level, x, y);
     float a = level->colour[0][c][at], b = level->colour[1][c][at], mean = mean_of_halves(level, c, at);
     float darkest = mean_of_halves(level, c, nearest_at(level, x > 0 ? x - 1 : x + 1, y)), brightest = darkest;
-    float albedo = albedo_at(level, c, at), like = 0, around = 0, variance = 0;
+    float albedo = albedo_at(level, c, at), like = 0, neighbour_mean = 0, variance = 0;
     for (int j = -1; j <= 1; j++) {
         for (int i = -1; i <= 1; i++) {
             int qx = clamp_int(x + i, 0, level->width - 1), qy = clamp_int(y + j, 0, level->height - 1);
@@ -508,7 +508,7 @@ static float supported_mean(const struct denoise_run *d, const struct denoise_pi
             size_t q = pixel_at(level, qx, qy);
             float other = mean_of_halves(level, c, q);
             bool same = fabsf(depth[at] - depth[q]) <= same_depth * depth[at];
-            around += 0.125F * other;
+            neighbour_mean += 0.125F * other;
             like += 0.125F * other * (same ? albedo / albedo_at(level, c, q) : 1);
             variance += 0.125F * fabsf(bounded(rows[1 + j][qx].variance[c]));
             if (qx == x && qy == y)
@@ -521,7 +521,8 @@ static float supported_mean(const struct denoise_run *d, const struct denoise_pi
     float own = fabsf(bounded(rows[1][x].variance[c])), others = variance > own ? variance : own;
     float high = (a < b ? a : b) - support_errors * sqrtf(own);
     float low = (a < b ? b : a) + support_errors * sqrtf(others);
-    float error = fminf(sqrtf(0.125F * variance), fabsf(like - around));
+    float error = sqrtf(0.125F * variance), detail = fabsf(like - neighbour_mean);
+    error = detail < error ? detail : error;
     high = brightest > high ? brightest : high;
     high = like + error > high ? like + error : high;
     low = darkest < low ? darkest : low;
