@@ -361,11 +361,13 @@ static bool read_positional(struct script_context *c, const struct script_functi
     if (function_renders(function) && is_plain_table(L, slot) && !read_more(c, function, slot++, args))
         return false;
     char fields[256];
-    if (lua_gettop(L) >= slot && c->sandbox.locate) /* a file of data has no habits of old scripts */
-        sandbox_raise(&c->sandbox, "there are arguments after %s", function->parameters[index].name);
-    if (lua_gettop(L) >= slot)
-        context_warn_once(c, WARNED_EXTRA, "arguments after %s are ignored%s", function->parameters[index].name,
+    if (lua_gettop(L) >= slot) {
+        const char *name = function->parameters[index].name;
+        if (c->sandbox.locate) /* a file of data has no habits of old scripts */
+            sandbox_raise(&c->sandbox, "there are arguments after %s", name);
+        context_warn_once(c, WARNED_EXTRA, "arguments after %s are ignored%s", name,
                           table_form_words(function, fields));
+    }
     /* gr.sphere(2): numbers count as text, so this is a name. */
     if (lua_gettop(L) == first && lua_type(L, first) == LUA_TNUMBER && has_field(function, "material") &&
         has_field(function, "name"))

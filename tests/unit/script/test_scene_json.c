@@ -243,11 +243,11 @@ TEST(frames_of_an_animation_are_a_scene_each_and_other_pictures_need_a_number_in
 TEST(the_numbers_of_a_written_scene_are_the_shortest_that_are_read_as_the_same) {
     test_need_json();
     test_write_text(test_path("n.lua"), "gr.render{node = gr.sphere{centre = {0.1, 1/3, -0.0}, radius = 1e-20,\n"
-                                        "  material = gr.material{kd = {0.1 + 0.2, 100, 1e25}}}, eye = {0, 0, 5}}\n");
+                                        "  material = gr.material{kd = {0.1 + 0.2, 100, 1e25}}}, eye = {0, 5, 9007199254740993}}\n");
     test_shell("$gray --to-json n.lua", 0,
                "{\"gray\": 1,\n \"nodes\": [\n  {\n   \"centre\": [0.1, 0.3333333333333333, -0.0],\n   \"material\": "
                "{\"kd\": [0.30000000000000004, 100, 1e+25], \"type\": \"material\"},\n   \"radius\": 1e-20, \"type\": "
-               "\"sphere\"\n  }\n ],\n \"picture\": {\"eye\": [0, 0, 5]}\n}\n");
+               "\"sphere\"\n  }\n ],\n \"picture\": {\"eye\": [0, 5, 9007199254740992]}\n}\n");
 }
 
 TEST(the_schema_accepts_what_gray_writes_and_refuses_other_fields) {
