@@ -16,12 +16,14 @@ local white_square, black_square = wood(gr.vec(0.52, 0.36, 0.19), gr.vec(0.40, 0
 local frame = wood(gr.vec(0.16, 0.055, 0.024), gr.vec(0.07, 0.022, 0.01), 0.12)
 local felt = gr.openpbr_material {base_color = {0.02, 0.06, 0.075}, fuzz_weight = 0.7, fuzz_color = {0.10, 0.22, 0.26}, specular_weight = 0}
 
--- Foot and stem of every piece, as one turned profile up to the collar at `height`.
+-- Foot and stem of every piece, as one turned profile up to the collar at `height`. Those of a short one are flatter.
 local function turned(height, width)
+    local s = math.min(1, height / 0.62)
     return gr.lathe {spline = 'catmull-rom', points = {
-        {0, 0}, {width * 0.93, 0.01}, {width, 0.06}, {width * 0.98, 0.10}, {width * 0.88, 0.14}, {width * 0.86, 0.17}, {width * 0.92, 0.20},
-        {width * 0.84, 0.25}, {width * 0.58, 0.34}, {width * 0.42, 0.46}, {width * 0.33, height * 0.76}, {width * 0.36, height - 0.11},
-        {width * 0.68, height - 0.08}, {width * 0.74, height - 0.05}, {width * 0.66, height - 0.02}, {width * 0.45, height}, {0, height},
+        {0, 0}, {width * 0.93, 0.01 * s}, {width, 0.06 * s}, {width * 0.98, 0.10 * s}, {width * 0.88, 0.14 * s}, {width * 0.86, 0.17 * s},
+        {width * 0.92, 0.20 * s}, {width * 0.84, 0.25 * s}, {width * 0.58, 0.34 * s}, {width * 0.42, 0.46 * s}, {width * 0.33, height * 0.76},
+        {width * 0.36, height - 0.11 * s}, {width * 0.68, height - 0.08 * s}, {width * 0.74, height - 0.05 * s},
+        {width * 0.66, height - 0.02 * s}, {width * 0.45, height}, {0, height},
     }}
 end
 local function ball(y, r) return gr.sphere {centre = {0, y, 0}, radius = r} end
