@@ -6,7 +6,8 @@ tools/fireflies.py PICTURE [REFERENCE]
 tools/fireflies.py --scene SCRIPT...
 tools/fireflies.py --large SCRIPT...
 
-The reference is a picture of the same size with many samples. An outlier that is also one in the reference is no error.
+The reference is a picture of the same size with many samples. An outlier is no error if the pixel differs there from its
+neighbours as much, less at most 8 levels: it is a detail of the scene.
 With --scene, renders each path-traced scene with the OPTIONS of its first lines. It also renders the surroundings of
 the outliers as a reference, without denoising, with SPP samples (default 4096). --large does so with the picture beside
 the script that tools/gallery.sh has made, and the options LARGE. GRAY: the program (default ./gray); OPTIONS: more
@@ -31,21 +32,28 @@ def read_png(name):
     return width, height, [raw[3 * width * y:3 * width * (y + 1)] for y in range(height)]
 
 
-def is_outlier(rows, x, y):
+def differences(rows, x, y):
+    """From the median of the neighbours, for each channel; and whether it makes an outlier."""
     for channel in range(3):
         around = sorted(rows[y + j][3 * (x + i) + channel] for j in (-1, 0, 1) for i in (-1, 0, 1) if i or j)
-        difference = abs(rows[y][3 * x + channel] - (around[3] + around[4]) / 2)
-        if difference <= 8:
+        difference = rows[y][3 * x + channel] - (around[3] + around[4]) / 2
+        if abs(difference) <= 8:
+            yield difference, False
             continue
         mean = sum(around) / 8
         deviation = (sum((value - mean) ** 2 for value in around) / 8) ** .5
-        if difference > 4 * deviation + 8:
-            return True
-    return False
+        yield difference, abs(difference) > 4 * deviation + 8
 
 
 def outliers(width, height, rows):
-    return [(x, y) for y in range(1, height - 1) for x in range(1, width - 1) if is_outlier(rows, x, y)]
+    return [(x, y) for y in range(1, height - 1) for x in range(1, width - 1)
+            if any(out for _, out in differences(rows, x, y))]
+
+
+def is_detail(rows, at, truth, there):
+    """Whether the outlier at a place has its differences in the reference, at another place of that."""
+    return all(not out or (true * own > 0 and abs(own) <= abs(true) + 8)
+               for (own, out), (true, _) in zip(differences(rows, *at), differences(truth, *there)))
 
 
 def report(name, found):
@@ -61,7 +69,7 @@ def compare(picture, reference):
         size, truth = read_png(reference)[:2], read_png(reference)[2]
         if size != (width, height):
             sys.exit(f'{reference}: is not of {width} x {height} pixels')
-        found = [(x, y) for x, y in found if not is_outlier(truth, x, y)]
+        found = [at for at in found if not is_detail(rows, at, truth, at)]
     return report(picture, found)
 
 
@@ -82,7 +90,8 @@ def check_scene(script, folder, large):
         picture = script[:-len('.lua')] + '.png'
     else:
         render(script, picture, options)
-    found = outliers(*read_png(picture))
+    width, height, rows = read_png(picture)
+    found = outliers(width, height, rows)
     for x, y in found:
         cells.setdefault((x // CELL, y // CELL), []).append((x, y))
     for pixels in cells.values():
@@ -91,7 +100,7 @@ def check_scene(script, folder, large):
         render(script, part, [*options, '--denoise=none', '--spp', os.environ.get('SPP', '4096'), '--seed', '1',
                               '--crop', f'{x0},{y0},{size[0]},{size[1]}'])
         truth = read_png(part)[2]
-        left += [(x, y) for x, y in pixels if not is_outlier(truth, x - x0, y - y0)]
+        left += [(x, y) for x, y in pixels if not is_detail(rows, (x, y), truth, (x - x0, y - y0))]
     print(f'{script}: {len(found)} pixels stand out, {len(left)} of them not in the reference', flush=True)
     return report(script, left)
 
