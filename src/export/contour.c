@@ -24,6 +24,8 @@ struct base_mesh {
 struct octree {
     struct contour *contour;
     struct base_mesh *bases;
+    size_t count; /* of bases */
+    size_t limit; /* of cells that are divided, or 0 */
     bool divided; /* a cell of the base cell in work */
 };
 
@@ -32,7 +34,7 @@ static void mesh_cell(struct octree *tree, const struct cell *cell) {
     struct contour *contour = tree->contour;
     if (contour->failed)
         return;
-    if (cell->size == 1 || !contour_is_divided(contour, cell)) {
+    if (cell->size <= contour->finest || !contour_is_divided(contour, cell)) {
         if (cell_mesh(contour, cell))
             return;
         tree->divided = true;
@@ -73,17 +75,45 @@ static void mesh_base(struct octree *tree, const int base[3]) {
     }
 }
 
+/* A fractal has details of all sizes: if more cells are divided than this, for each base cell that has a part of the
+ * surface, all get one size, a part of the base cell's. The gyroid lamp of data/print needs 3. */
+enum { DIVIDED_LIMIT = 4, MIN_DIVIDED_LIMIT = 2000, COARSE_PART = 4 };
+
+static void set_limit(struct octree *tree) {
+    tree->limit = MIN_DIVIDED_LIMIT;
+    for (size_t i = 0; i < tree->count; i++)
+        tree->limit += tree->contour->grid.wanted[i] ? DIVIDED_LIMIT : 0;
+}
+
+static bool has_too_many(const struct octree *tree) {
+    const struct contour *contour = tree->contour;
+    return tree->limit && contour->finest == 1 && contour->divided.count > tree->limit;
+}
+
+/* Forgets the triangles, and which cells were divided. */
+static void begin_again(struct octree *tree) {
+    struct contour *contour = tree->contour;
+    struct line_grid *grid = &contour->grid;
+    contour->finest = grid->base / COARSE_PART;
+    contour->triangles.count = 0;
+    key_map_destroy(&contour->divided);
+    key_map_destroy(&contour->passed);
+    memset(tree->bases, 0, tree->count * sizeof *tree->bases);
+    memset(grid->wanted, 1, tree->count);
+    grid->has_wanted = true;
+}
+
 static bool mesh_all(struct octree *tree, struct pool *pool, struct error *error) {
     struct contour *contour = tree->contour;
     struct line_grid *grid = &contour->grid;
     int base[3];
-    while (grid->has_wanted) {
+    while (grid->has_wanted && !has_too_many(tree)) {
         grid->has_wanted = false;
         for (base[0] = 0; base[0] < grid->base_count[0]; base[0]++) {
             for (base[1] = 0; base[1] < grid->base_count[1]; base[1]++) {
                 if (pool_cancelled(pool))
                     return error_set(error, ERROR_CANCELLED, "stopped while a solid was meshed");
-                for (base[2] = 0; base[2] < grid->base_count[2] && !contour->failed; base[2]++) {
+                for (base[2] = 0; base[2] < grid->base_count[2] && !contour->failed && !has_too_many(tree); base[2]++) {
                     size_t index = grid_base_index(grid, base);
                     if (!grid->wanted[index])
                         continue;
@@ -98,25 +128,29 @@ static bool mesh_all(struct octree *tree, struct pool *pool, struct error *error
 
 /* Only the newest triangles of each base cell. */
 static bool gather(const struct octree *tree, struct list *out) {
-    struct contour *contour = tree->contour;
-    const struct line_grid *grid = &contour->grid;
-    size_t bases = (size_t)grid->base_count[0] * (size_t)grid->base_count[1] * (size_t)grid->base_count[2];
     bool ok = true;
-    for (size_t i = 0; ok && i < bases; i++)
-        ok = list_add(out, (struct solid_triangle *)contour->triangles.items + tree->bases[i].first,
+    for (size_t i = 0; ok && i < tree->count; i++)
+        ok = list_add(out, (struct solid_triangle *)tree->contour->triangles.items + tree->bases[i].first,
                       tree->bases[i].count, sizeof(struct solid_triangle));
     return ok;
 }
 
-static bool build(struct contour *contour, uint32_t cells, struct pool *pool, struct solid_mesh *out,
+static bool build(struct contour *contour, uint32_t cells, const struct solid_input *input, struct solid_mesh *out,
                   struct error *error) {
     struct octree tree = {.contour = contour};
-    if (!line_grid_build(contour, cells, pool, error))
+    if (!line_grid_build(contour, cells, input->pool, error))
         return false;
     const int *bases = contour->grid.base_count;
-    tree.bases = mem_alloc_zero((size_t)bases[0] * (size_t)bases[1] * (size_t)bases[2], sizeof *tree.bases);
+    tree.count = (size_t)bases[0] * (size_t)bases[1] * (size_t)bases[2];
+    tree.bases = mem_alloc_zero(tree.count, sizeof *tree.bases);
     bool ok = tree.bases || error_no_memory(error, "the mesh of a solid");
-    ok = ok && mesh_all(&tree, pool, error);
+    if (ok && input->may_have_faults)
+        set_limit(&tree);
+    ok = ok && mesh_all(&tree, input->pool, error);
+    if (ok && has_too_many(&tree)) {
+        begin_again(&tree);
+        ok = mesh_all(&tree, input->pool, error);
+    }
     if (ok && (contour->failed || contour->probe.failed || !gather(&tree, &out->triangles)))
         ok = error_no_memory(error, "the mesh of a solid");
     mem_free(tree.bases);
@@ -126,14 +160,15 @@ static bool build(struct contour *contour, uint32_t cells, struct pool *pool, st
 }
 
 bool contour_build(const struct solid_input *input, uint32_t cells, struct solid_mesh *out, struct list *known,
-                   struct error *error) {
-    struct contour contour = {.tolerance = input->tolerance};
+                   bool *is_coarse, struct error *error) {
+    struct contour contour = {.tolerance = input->tolerance, .finest = 1};
     struct vec3 extent = vec3_sub(input->csg->bounds.max, input->csg->bounds.min);
     *out = (struct solid_mesh){0};
     contour.size = vec3_max_abs(extent);
     if (!solid_probe_init(&contour.probe, input->csg))
         return error_no_memory(error, "the mesh of a solid");
-    bool ok = build(&contour, cells, input->pool, out, error);
+    bool ok = build(&contour, cells, input, out, error);
+    *is_coarse = contour.finest > 1;
     *known = contour.grid.known;
     contour.grid.known = (struct list){0};
     solid_probe_destroy(&contour.probe);

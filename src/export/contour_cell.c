@@ -541,7 +541,7 @@ bool cell_mesh(struct contour *contour, const struct cell *cell) {
         at[i / 2] += i % 2 * cell->size;
         collect_face(&work, i / 2, at, cell->size, i % 2);
     }
-    bool last = cell->size == 1 || (cell->size <= contour->grid.small && contour->divisions == 0);
+    bool last = cell->size <= contour->finest || (cell->size <= contour->grid.small && contour->divisions == 0);
     for (int i = 0; i < work.count && !contour->failed && !(work.bad && !last); i++) {
         if (work.arcs[i].used)
             continue;

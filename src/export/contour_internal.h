@@ -65,6 +65,7 @@ struct contour {
     struct list arcs, faces;
     struct key_map face_numbers, divided, passed; /* cells that are divided, that passed the tests which take long */
     int divisions;                                /* of small cells that are left */
+    int finest;                                   /* cells of this size are never divided */
     bool failed;                                  /* no memory: the mesh is of no use */
 };
 
@@ -100,9 +101,10 @@ static inline size_t grid_base_index(const struct line_grid *grid, const int bas
 uint32_t contour_add_vertex(struct contour *contour, const struct solid_vertex *vertex);
 void contour_add_triangle(struct contour *contour, uint32_t a, uint32_t b, uint32_t c, uint32_t surface);
 
-/* Everything is within about a quarter of the tolerance of the surface. `cells`: base cells along the longest side.
- * `known`: points of the surface, struct known_point; the caller destroys it. Errors: no memory, cancelled. */
+/* Everything is within about a quarter of the tolerance of the surface, but for *is_coarse: a mesh that may have
+ * faults, of a solid with too many details. `cells`: base cells along the longest side. `known`: points of the surface,
+ * struct known_point; the caller destroys it. Errors: no memory, cancelled. */
 bool contour_build(const struct solid_input *input, uint32_t cells, struct solid_mesh *out, struct list *known,
-                   struct error *error);
+                   bool *is_coarse, struct error *error);
 
 #endif

@@ -494,15 +494,16 @@ static bool add_solid(struct gltf_surface *s, const struct gltf_source *source, 
         return false;
     struct box box = csg->bounds;
     struct solid_input input = {csg, primitive_node(source->world, source->primitive)->name,
-                                source->solid_share * vec3_max_abs(vec3_sub(box.max, box.min)), source->pool};
+                                source->solid_share * vec3_max_abs(vec3_sub(box.max, box.min)), source->pool, true};
     struct solid_mesh mesh = {0};
     struct solid_findings findings;
     bool ok = solid_mesh_build(&input, &mesh, &findings, error);
     if (!ok && error->kind == ERROR_SCENE && !error->limit) {
         *error = (struct error){0};
-        s->why = "has details that no mesh within the tolerance has";
+        s->why = "is empty";
         return true;
     }
+    s->why = findings.has_faults ? "has finer details than its mesh, which is further away than the tolerance" : NULL;
     ok = ok && (add_solid_mesh(s, &mesh, csg) || error_no_memory(error, "the mesh of a solid"));
     solid_mesh_destroy(&mesh);
     return ok;

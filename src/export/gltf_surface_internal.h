@@ -26,7 +26,7 @@ struct gltf_surface {
     struct transform object_from_surface;
     uint32_t material; /* of triangles that are added */
     bool falls;        /* likewise of grids: the diagonal of a cell, from the left */
-    const char *why;   /* it is left out: the end of a sentence; or NULL */
+    const char *why;   /* it is left out or inexact: the end of a sentence; or NULL */
     double tolerance;  /* about the largest distance from the exact one, in its space */
 };
 void gltf_surface_destroy(struct gltf_surface *surface);

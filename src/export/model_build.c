@@ -235,7 +235,7 @@ static bool add_mesh(struct model_builder *b, const struct mesh *mesh, struct ex
 }
 
 static bool add_solid(struct model_builder *b, struct export_part *about, struct error *error) {
-    const struct solid_input input = {about->csg, about->name, b->tolerance, b->input->pool};
+    const struct solid_input input = {about->csg, about->name, b->tolerance, b->input->pool, false};
     struct solid_mesh mesh;
     struct solid_findings findings;
     if (!solid_mesh_build(&input, &mesh, &findings, error))

@@ -14,7 +14,7 @@
 #include "mesh/mesh.h"
 #include "mesh/mesh_topology.h"
 
-enum { ROUNDS = 6, GRIDS = 4, MIN_CELLS = 24, MAX_CELLS = 64 };
+enum { ROUNDS = 6, MANY_FAULTS = 200, GRIDS = 4, GRIDS_WITH_FAULTS = 2, MIN_CELLS = 24, MAX_CELLS = 64 };
 
 void solid_mesh_destroy(struct solid_mesh *mesh) {
     list_destroy(&mesh->vertices);
@@ -142,6 +142,7 @@ struct verification {
     struct solid_probe *probes; /* of the workers */
     uint64_t *stray;            /* by triangle, bits */
     struct list boxes;
+    size_t faults[ROUNDS]; /* of each round */
     bool failed;
 };
 
@@ -270,22 +271,34 @@ static void mark_kept(struct verification *v, const struct solid_mesh *mesh, uin
     v->boxes.count = 0;
 }
 
+/* Many faults that two rounds have not halved will stay. */
+static bool goes_on(const struct verification *v) {
+    return v->round < ROUNDS && (v->round < 3 || v->faults[v->round - 1] < MANY_FAULTS ||
+                                 v->faults[v->round - 1] < v->faults[v->round - 3] / 2);
+}
+
+static bool simplify(const struct verification *v, const struct solid_mesh *fine, struct solid_mesh *out,
+                     const uint8_t *keep, struct error *error) {
+    const struct simplify_input input = {
+        .tolerance = v->input->tolerance, .size = v->size, .resolution = 2 * solid_grain(v->input->csg), .keep = keep};
+    solid_mesh_destroy(out);
+    return (solid_mesh_copy(fine, out) && simplify_mesh(out, &input)) || error_no_memory(error, "the mesh of a solid");
+}
+
 /* *good: it has no faults. */
 static bool simplify_and_test(struct verification *v, const struct solid_mesh *fine, struct solid_mesh *out,
                               uint8_t *keep, bool *good, struct error *error) {
-    const struct simplify_input input = {
-        .tolerance = v->input->tolerance, .size = v->size, .resolution = 2 * solid_grain(v->input->csg), .keep = keep};
     *good = false;
-    for (v->round = 0; v->round < ROUNDS && !*good; v->round++) {
+    for (v->round = 0; goes_on(v) && !*good; v->round++) {
         if (pool_cancelled(v->input->pool))
             return error_set(error, ERROR_CANCELLED, "stopped while a solid was meshed");
-        solid_mesh_destroy(out);
         mark_kept(v, fine, keep);
-        if (!solid_mesh_copy(fine, out) || !simplify_mesh(out, &input))
-            return error_no_memory(error, "the mesh of a solid");
+        if (!simplify(v, fine, out, keep, error))
+            return false;
         v->mesh = out;
         if (!verify(v, error))
             return false;
+        v->faults[v->round] = v->boxes.count;
         *good = v->boxes.count == 0;
     }
     bool closed = false, coincide = false;
@@ -301,13 +314,12 @@ static bool is_empty(const struct solid_input *input, struct error *error) {
 }
 
 static bool try_grid(const struct solid_input *input, uint32_t cells, struct solid_mesh *out,
-                     struct solid_findings *findings, bool *good, struct error *error) {
+                     struct solid_findings *findings, bool *is_coarse, struct error *error) {
     double size = vec3_max_abs(vec3_sub(input->csg->bounds.max, input->csg->bounds.min));
     int workers = pool_workers(input->pool);
     struct verification v = {.input = input, .size = size};
     struct solid_mesh fine;
-    *good = false;
-    bool ok = contour_build(input, cells, &fine, &v.known, error);
+    bool good = false, ok = contour_build(input, cells, &fine, &v.known, is_coarse, error);
     if (ok && fine.triangles.count == 0)
         ok = is_empty(input, error);
     round_coordinates(input->csg, &fine);
@@ -315,7 +327,9 @@ static bool try_grid(const struct solid_input *input, uint32_t cells, struct sol
     ok = ok && separate_parts(&fine, input, findings, error);
     v.probes = solid_probes(input->csg, workers);
     ok = ok && ((keep && v.probes) || error_no_memory(error, "the mesh of a solid"));
-    ok = ok && simplify_and_test(&v, &fine, out, keep, good, error);
+    ok = ok &&
+         (*is_coarse ? simplify(&v, &fine, out, keep, error) : simplify_and_test(&v, &fine, out, keep, &good, error));
+    findings->has_faults = !good;
     solid_probes_destroy(v.probes, workers);
     mem_free(keep);
     list_destroy(&v.boxes);
@@ -327,20 +341,22 @@ static bool try_grid(const struct solid_input *input, uint32_t cells, struct sol
 bool solid_mesh_build(const struct solid_input *input, struct solid_mesh *out, struct solid_findings *findings,
                       struct error *error) {
     *out = (struct solid_mesh){0};
-    *findings = (struct solid_findings){0};
+    *findings = (struct solid_findings){.has_faults = true};
     if (box_is_empty(&input->csg->bounds))
         return is_empty(input, error);
     double size = vec3_max_abs(vec3_sub(input->csg->bounds.max, input->csg->bounds.min));
     double wanted = math_min(math_max(sqrt(size / input->tolerance), MIN_CELLS), MAX_CELLS);
-    bool good = false;
-    for (int i = 0; i < GRIDS && !good; i++) {
+    int grids = input->may_have_faults ? GRIDS_WITH_FAULTS : GRIDS;
+    bool is_coarse = false;
+    for (int i = 0; i < grids && findings->has_faults && !is_coarse; i++) {
         uint32_t cells = (uint32_t)(wanted * (1 + 0.37 * i));
-        if (!try_grid(input, cells, out, findings, &good, error)) {
+        solid_mesh_destroy(out);
+        if (!try_grid(input, cells, out, findings, &is_coarse, error)) {
             solid_mesh_destroy(out);
             return false;
         }
     }
-    if (good)
+    if (!findings->has_faults || input->may_have_faults)
         return true;
     solid_mesh_destroy(out);
     return error_set(error, ERROR_SCENE,

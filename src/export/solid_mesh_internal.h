@@ -46,16 +46,19 @@ struct solid_input {
     const char *name;      /* of its node, for messages */
     double tolerance;
     struct pool *pool;
+    bool may_have_faults; /* a scene's: a mesh with faults is better than none, and than a long time */
 };
 /* What is worth a notice. */
 struct solid_findings {
     uint32_t separated;   /* vertices that were moved because parts of the solid touch there */
     struct vec3 position; /* of one of them */
+    bool has_faults;      /* it is further away than the tolerance somewhere, or triangles intersect */
 };
 
 /* A closed, oriented mesh whose coordinates are numbers of single precision and whose triangles do not intersect; at
- * all points that are tested the distance from the solid, and of the solid from it, is below the tolerance. Errors: the
- * solid is empty, or too fine for this; no memory; cancelled. */
+ * all points that are tested the distance from the solid, and of the solid from it, is below the tolerance. If no such
+ * mesh is found, a mesh that may have faults is the best that was. Errors: the solid is empty, or too fine for this; no
+ * memory; cancelled. */
 bool solid_mesh_build(const struct solid_input *input, struct solid_mesh *out, struct solid_findings *findings,
                       struct error *error);
 /* The triangles of a mesh under a map, with one vertex for each position; `surface` is the material slot. False: no
