@@ -9,7 +9,8 @@
 enum { GLTF_BAKED_CELL = 6 }; /* texels of a triangle in a baked picture at least */
 /* The side of a baked picture, texels: smaller where many may be baked. */
 static inline uint32_t gltf_baked_size(const struct world *world) {
-    return world->prototype_count <= 32 ? 1024 : world->prototype_count <= 256 ? 512 : 256;
+    uint32_t count = world->prototype_count;
+    return count <= 32 ? 1024 : count <= 256 ? 512 : count <= 1024 ? 256 : 128;
 }
 
 struct gltf_painter {

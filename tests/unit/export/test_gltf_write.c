@@ -403,6 +403,43 @@ TEST(what_gltf_lacks_is_left_out_with_one_warning_each) {
     expect("gr.sphere{}:export('mine.glb')\n", "scene.lua", 1, "exists already and is not a model");
 }
 
+TEST(equal_solids_share_a_mesh_unless_a_tolerance_is_finer_for_the_larger_one) {
+    static const char scene[] =
+        "local function cap(r) return gr.intersection{gr.sphere{radius = 1}, gr.box{min = {-2, -2, 0}, max = {2, 2, "
+        "2}}}:scale(r, r, r) end\n"
+        "gr.node{children = {cap(1), cap(1):translate(3, 0, 0), cap(1.5):translate(16, 0, 0)}}:export('x.glb'%s)\n";
+    for (uint32_t i = 0; i < 2; i++) {
+        char text[512];
+        struct model model;
+        (void)snprintf(text, sizeof text, scene, i == 0 ? "" : ", {tolerance = 0.01}");
+        expect(text, "scene.lua", 0, NULL);
+        read_file(&model, "x.glb", -1);
+        CHECK_EQ_INT(model.meshes.count, i + 1);
+        model_destroy(&model);
+    }
+}
+
+/* Of a solid with details of all sizes, a Julia set of quaternions. */
+TEST_LONG(a_fractal_has_a_coarser_mesh_in_a_glb_and_a_warning) {
+    struct model model;
+    expect("local function f(p)\n"
+           "    local _, x, y, z, w, slope = gr.loop(6, 1, p.x, p.y, p.z, 0.0, 1.0, function(_, _, x, y, z, w, slope)\n"
+           "        local square = x * x + y * y + z * z + w * w\n"
+           "        if square > 256 then return 0, x, y, z, w, slope end\n"
+           "        return 1, x * x - y * y - z * z - w * w - 0.2, 2 * x * y + 0.6, 2 * x * z + 0.2, 2 * x * w + 0.2,\n"
+           "            2 * math.sqrt(square) * slope\n"
+           "    end)\n"
+           "    local square = x * x + y * y + z * z + w * w\n"
+           "    return gr.max(0.25 * math.log(square) * math.sqrt(square) / slope, 0.0) - 0.001\n"
+           "end\n"
+           "gr.implicit{name = 'julia', f = f, radius = 1.6, distance = true}:export('x.glb')\n",
+           "scene.lua", 0, "'julia': has finer details than its mesh");
+    read_file(&model, "x.glb", -1);
+    const double volume = volume_of(&model, "julia");
+    CHECK(volume > 1 && volume < 4);
+    model_destroy(&model);
+}
+
 TEST(the_bytes_of_a_glb_depend_on_no_number_of_threads) {
     static const char scene[] =
         "gr.node{children = {gr.difference{gr.sphere{radius = 2}, gr.box{min = {0, 0, 0}, max = {3, 3, 3}}},\n"
