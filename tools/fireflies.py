@@ -11,7 +11,8 @@ neighbours as much, less at most 8 levels: it is a detail of the scene.
 With --scene, renders each path-traced scene with the OPTIONS of its first lines. It also renders the surroundings of
 the outliers as a reference, without denoising, with SPP samples (default 4096). --large does so with the picture beside
 the script that tools/gallery.sh has made, and the options LARGE. GRAY: the program (default ./gray); OPTIONS: more
-options for all renderings. ffmpeg reads the pictures.
+options for all renderings (with '--bloom 0' a reference has no light from far away, and no wide surroundings). ffmpeg
+reads the pictures.
 Prints each outlier that is an error, and exits with 1 if there is one."""
 import os
 import re
