@@ -6,13 +6,12 @@ tools/fireflies.py PICTURE [REFERENCE]
 tools/fireflies.py --scene SCRIPT...
 tools/fireflies.py --large SCRIPT...
 
-The reference is a picture of the same size with many samples. An outlier is no error if the pixel differs there from its
-neighbours as much, less at most 8 levels: it is a detail of the scene.
+The reference is a picture of the same size with many samples. An outlier is no error if the pixel is as far on that side
+there, less at most 8 levels: it is a detail of the scene.
 With --scene, renders each path-traced scene with the OPTIONS of its first lines. It also renders the surroundings of
 the outliers as a reference, without denoising, with SPP samples (default 4096). --large does so with the picture beside
 the script that tools/gallery.sh has made, and the options LARGE. GRAY: the program (default ./gray); OPTIONS: more
-options for all renderings (with '--bloom 0' a reference has no light from far away, and no wide surroundings). ffmpeg
-reads the pictures.
+options for all renderings ('--bloom 0' makes references quicker and a little darker). ffmpeg reads the pictures.
 Prints each outlier that is an error, and exits with 1 if there is one."""
 import os
 import re
@@ -33,28 +32,28 @@ def read_png(name):
     return width, height, [raw[3 * width * y:3 * width * (y + 1)] for y in range(height)]
 
 
-def differences(rows, x, y):
-    """From the median of the neighbours, for each channel; and whether it makes an outlier."""
+def sides(rows, x, y):
+    """For each channel: the side of the neighbours on which the pixel is an outlier, 1 or -1, else 0."""
     for channel in range(3):
         around = sorted(rows[y + j][3 * (x + i) + channel] for j in (-1, 0, 1) for i in (-1, 0, 1) if i or j)
         difference = rows[y][3 * x + channel] - (around[3] + around[4]) / 2
         if abs(difference) <= 8:
-            yield difference, False
+            yield 0
             continue
         mean = sum(around) / 8
         deviation = (sum((value - mean) ** 2 for value in around) / 8) ** .5
-        yield difference, abs(difference) > 4 * deviation + 8
+        yield 0 if abs(difference) <= 4 * deviation + 8 else 1 if difference > 0 else -1
 
 
 def outliers(width, height, rows):
-    return [(x, y) for y in range(1, height - 1) for x in range(1, width - 1)
-            if any(out for _, out in differences(rows, x, y))]
+    return [(x, y) for y in range(1, height - 1) for x in range(1, width - 1) if any(sides(rows, x, y))]
 
 
 def is_detail(rows, at, truth, there):
-    """Whether the outlier at a place has its differences in the reference, at another place of that."""
-    return all(not out or (true * own > 0 and abs(own) <= abs(true) + 8)
-               for (own, out), (true, _) in zip(differences(rows, *at), differences(truth, *there)))
+    """Whether the outlier at a place is as far on its side in the reference, at another place of that."""
+    own = rows[at[1]][3 * at[0]:3 * at[0] + 3]
+    true = truth[there[1]][3 * there[0]:3 * there[0] + 3]
+    return all(side * (own[k] - true[k]) <= 8 for k, side in enumerate(sides(rows, *at)))
 
 
 def report(name, found):
