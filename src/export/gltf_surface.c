@@ -511,6 +511,8 @@ static bool add_solid(struct gltf_surface *s, const struct gltf_source *source, 
 
 static const char *why_left_out(const struct geometry *geometry) {
     struct box box = geometry_bounds(geometry);
+    if (box_is_empty(&box))
+        return "is empty";
     if (!vec3_finite(box.min) || !vec3_finite(box.max) || (geometry->csg && geometry->csg->inside_out))
         return "has no end";
     return geometry->csg && geometry->csg->clipped ? "is cut open" : NULL;

@@ -392,6 +392,10 @@ TEST(what_gltf_lacks_is_left_out_with_one_warning_each) {
     expect("gr.node{children = {gr.plane{name = 'ground', normal = {0, 1, 0}}, gr.plane{name = 'wall', normal = {1, 0, "
            "0}}, gr.sphere{}}}:export('x.glb')\n",
            "scene.lua", 0, "warning: 'ground' and 1 more: has no end");
+    expect("gr.node{children = {gr.sphere{}, gr.intersection('gap', gr.sphere{}, gr.sphere{centre = {3, 0, 0}}),\n"
+           "gr.intersection('hole', gr.sphere{}, gr.difference(gr.sphere{radius = 5}, gr.sphere{radius = "
+           "4}))}}:export('x.glb')\n",
+           "scene.lua", 0, "warning: 'gap' and 1 more: is empty");
     expect("gr.render{node = gr.sphere{}, width = 8, height = 8, ambient = {0.1, 0.1, 0.1}}\n", "-o y.glb scene.lua", 0,
            "gr.render: warning: the ambient light is left out");
     expect("gr.node('nothing'):export('z.glb')\n", "scene.lua", 0, NULL);
