@@ -123,21 +123,22 @@ static int visit(lua_State *L) {
 
 /* --- meshes --- */
 
-/* The tolerances of a primitive, as shares of its size. */
-static double share_of(const struct gltf_scene *scene, uint32_t primitive, double *solid_share) {
+/* The tolerance of a primitive, as a share of its size; `solid`: that of one that is meshed as a solid. */
+static double share_of(const struct gltf_scene *scene, uint32_t primitive, bool solid) {
     const struct world *world = scene->moment->world;
     const struct box *box = &world->boxes[primitive], all = world_finite_bounds(world);
     double size = vec3_max_abs(vec3_sub(box->max, box->min)), wanted = scene->options.tolerance;
     double share = wanted > 0 && size > 0 ? math_min(math_max(wanted / size, 1e-6), 0.1) : 1e-3;
-    *solid_share = math_max(share, math_min(1e-3 * vec3_max_abs(vec3_sub(all.max, all.min)) / size, 4e-3));
-    *solid_share = wanted > 0 ? share : *solid_share;
-    return share;
+    double wide = math_min(1e-3 * vec3_max_abs(vec3_sub(all.max, all.min)) / size, 4e-3);
+    return solid && !(wanted > 0) ? math_max(share, wide) : share;
 }
 
-/* Of what makes its surface. Where a texture may depend on the place, the number of the prototype tells solids apart.
- */
-static uint64_t hash_solid(const struct world *world, uint32_t primitive, double share) {
+/* Of all that makes the surface of a solid. If its texture may depend on the place, the number of its prototype, too:
+ * such solids share a mesh only as instances. */
+static uint64_t hash_solid(const struct gltf_scene *scene, uint32_t primitive) {
+    const struct world *world = scene->moment->world;
     const struct csg *csg = primitive_prototype(world, primitive)->geometry.csg;
+    const double share = share_of(scene, primitive, true);
     uint64_t hash = hash_bytes(&share, sizeof share, 2);
     bool plain = true;
     for (uint32_t i = 0; i < csg->leaf_count; i++) {
@@ -152,7 +153,8 @@ static uint64_t hash_solid(const struct world *world, uint32_t primitive, double
         const uint32_t numbers[] = {csg->program[i].operation, csg->program[i].leaf, i < csg->solid_length};
         hash = hash_bytes(numbers, sizeof numbers, hash);
     }
-    return plain ? hash : hash_bytes(&world->primitives[primitive].prototype, sizeof(uint32_t), hash);
+    const uint32_t *prototype = &world->primitives[primitive].prototype;
+    return plain ? hash : hash_bytes(prototype, sizeof *prototype, hash);
 }
 
 /* Equal primitives have equal keys. Those in a space of their own, whose map is the second result, differ by where they
@@ -162,14 +164,12 @@ static int mesh_key(lua_State *L) {
     const uint32_t primitive = (uint32_t)lua_tointeger(L, 1);
     const struct prototype *prototype = primitive_prototype(world, primitive);
     struct transform map;
-    const uint32_t numbers[] = {prototype->material, prototype->slot_count, prototype->geometry.shape.kind};
-    uint64_t hash = hash_bytes(numbers, sizeof numbers, 1);
     if (prototype->geometry.csg) {
-        double share;
-        (void)share_of(scene_of(L), primitive, &share);
-        lua_pushinteger(L, (lua_Integer)(hash_solid(world, primitive, share) | 1));
+        lua_pushinteger(L, (lua_Integer)(hash_solid(scene_of(L), primitive) | 1));
         return 1;
     }
+    const uint32_t numbers[] = {prototype->material, prototype->slot_count, prototype->geometry.shape.kind};
+    uint64_t hash = hash_bytes(numbers, sizeof numbers, 1);
     bool is_unit = gltf_surface_is_unit(&prototype->geometry, &map);
     if (!is_unit || !world->surfaces.materials[prototype->material].plain)
         hash = hash_bytes(&prototype->geometry.shape, sizeof(struct shape), hash);
@@ -180,8 +180,8 @@ static int mesh_key(lua_State *L) {
 }
 
 static bool make_surface(struct gltf_scene *scene, uint32_t primitive) {
-    double solid_share, share = share_of(scene, primitive, &solid_share);
-    const struct gltf_source source = {scene->moment->world, primitive, share, solid_share, scene->options.pool};
+    const struct gltf_source source = {scene->moment->world, primitive, share_of(scene, primitive, false),
+                                       share_of(scene, primitive, true), scene->options.pool};
     gltf_surface_destroy(&scene->surface);
     scene->paint = (struct gltf_paint){0};
     return gltf_surface_make(&source, &scene->surface, scene->error) &&
