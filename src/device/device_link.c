@@ -20,10 +20,10 @@ struct slot {
     struct path_pixel pixels[FILM_TILE * FILM_TILE];
 };
 
-enum link_state { LINK_STARTS, LINK_READY, LINK_CLOSED };
+/* Closed: before it was ready, or after. */
+enum link_state { LINK_STARTS, LINK_READY, LINK_REFUSED, LINK_ENDED };
 struct device_link {
     _Atomic uint32_t state;
-    _Atomic uint32_t was_ready;
     struct pool_event asked, answered;
     char reason[DEVICE_REASON];
     struct device_statistics statistics; /* but for these: */
@@ -39,13 +39,16 @@ size_t device_link_size(uint32_t slots) {
 }
 
 void device_link_close(struct device_link *link) {
-    atomic_store(&link->state, LINK_CLOSED);
+    uint32_t starts = LINK_STARTS, ready = LINK_READY;
+    if (!atomic_compare_exchange_strong(&link->state, &starts, LINK_REFUSED))
+        (void)atomic_compare_exchange_strong(&link->state, &ready, LINK_ENDED);
     pool_signal(&link->asked);
     pool_signal(&link->answered);
 }
 
 bool device_link_was_ready(struct device_link *link) {
-    return atomic_load(&link->was_ready) != 0;
+    const uint32_t state = atomic_load(&link->state);
+    return state == LINK_READY || state == LINK_ENDED;
 }
 
 void device_link_refuse(struct device_link *link, const char *why) {
@@ -112,7 +115,7 @@ static void serve(void *context, uint32_t item, int worker) {
     const struct service *service = context;
     struct device_link *link = service->link;
     (void)item, (void)worker;
-    while (atomic_load(&link->state) != LINK_CLOSED && !(service->cuda && cuda_lost(service->cuda))) {
+    while (atomic_load(&link->state) == LINK_READY && !(service->cuda && cuda_lost(service->cuda))) {
         const uint32_t seen = atomic_load(&link->asked.signals);
         if (!make_any(service))
             pool_wait(&link->asked, seen, 0.5);
@@ -145,7 +148,6 @@ bool device_link_serve(struct device_link *link, struct cuda *cuda, void *scene,
         struct service service = {link, slots, cuda, cuda ? cuda_device(cuda) : emulation_device(emulation)};
         uint32_t starts = LINK_STARTS;
         link->statistics = cuda ? cuda_statistics(cuda) : (struct device_statistics){.name = "emulation"};
-        atomic_store(&link->was_ready, 1);
         (void)atomic_compare_exchange_strong(&link->state, &starts, LINK_READY);
         pool_signal(&link->answered);
         (void)pool_run(pool, slots, serve, &service);
