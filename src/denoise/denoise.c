@@ -60,7 +60,8 @@ static const struct denoise_regression regressions[REGRESSIONS] = {{DENOISE_WIND
                                                                    {DENOISE_WINDOW, 4, 0, 0.3F, .details = false},
                                                                    {2, 2, 0, 0, .details = true}};
 static const float correction_limit = 0.3F; /* of squared differences to a coarser pixel, in units of its variance */
-static const float support_errors = 3;      /* of pixels that are brighter or darker than all neighbours */
+static const float support_errors = 4;      /* of pixels that are brighter or darker than all neighbours */
+static const float albedo_errors = 2;       /* of albedo, of which a detail is no more than noise */
 static const float same_depth = 0.03F;      /* relative difference of depths on one surface */
 static const float choice_slope = 4;        /* how strongly the candidate with the smallest error is preferred */
 
@@ -490,8 +491,8 @@ static float albedo_at(const struct level *level, int c, size_t at) {
  * a detail of the scene is found by many. A pixel that no bright path found has a small error itself, so a dark one
  * must stand out from the errors of its neighbours. A detail of a texture is as bright as its neighbours would be on
  * average with its albedo, give or take the error of this mean of eight; neighbours at another depth are not of its
- * texture. Among millions of pixels, some have a mean of their few bright paths that is two standard errors too large.
- * rows: those around the pixel. */
+ * texture, and what the noise of albedo explains is no detail. Among millions of pixels, some have a mean of their few
+ * bright paths that is two standard errors too large. rows: those around the pixel. */
 static float supported_mean(const struct denoise_run *d, const struct denoise_pixel *const rows[3], int c, int x,
                             int y) {
     const struct level *level = d->level;
@@ -499,10 +500,13 @@ static float supported_mean(const struct denoise_run *d, const struct denoise_pi
     size_t at = pixel_at(level, x, y);
     float a = level->colour[0][c][at], b = level->colour[1][c][at], mean = mean_of_halves(level, c, at);
     float darkest = mean_of_halves(level, c, nearest_at(level, x > 0 ? x - 1 : x + 1, y)), brightest = darkest;
-    float albedo = albedo_at(level, c, at), like = 0, neighbour_mean = 0, variance = 0;
+    float albedo = albedo_at(level, c, at), like = 0, neighbour_mean = 0, variance = 0, noise = 0;
     for (int j = -1; j <= 1; j++) {
         for (int i = -1; i <= 1; i++) {
             int qx = clamp_int(x + i, 0, level->width - 1), qy = clamp_int(y + j, 0, level->height - 1);
+            const float(*halves)[DENOISE_FEATURES] = rows[1 + j][qx].features;
+            float difference = bounded(halves[0][DENOISE_ALBEDO + c]) - bounded(halves[1][DENOISE_ALBEDO + c]);
+            noise += 0.25F / 9 * difference * difference;
             if (i == 0 && j == 0)
                 continue;
             size_t q = pixel_at(level, qx, qy);
@@ -521,7 +525,10 @@ static float supported_mean(const struct denoise_run *d, const struct denoise_pi
     float own = fabsf(bounded(rows[1][x].variance[c])), others = variance > own ? variance : own;
     float high = (a < b ? a : b) - support_errors * sqrtf(own);
     float low = (a < b ? b : a) + support_errors * sqrtf(others);
-    float error = sqrtf(0.125F * variance), detail = fabsf(like - neighbour_mean);
+    float doubt = albedo_errors * sqrtf(noise) / albedo * neighbour_mean, detail = fabsf(like - neighbour_mean);
+    detail = detail > doubt ? detail - doubt : 0;
+    like = like > neighbour_mean ? neighbour_mean + detail : neighbour_mean - detail;
+    float error = sqrtf(0.125F * variance);
     error = detail < error ? detail : error;
     high = brightest > high ? brightest : high;
     high = like + error > high ? like + error : high;

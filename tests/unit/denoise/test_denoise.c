@@ -159,6 +159,34 @@ TEST(bright_and_dark_dots_of_a_texture_keep_their_contrast) {
     CHECK_NEAR(dots / count, 0.18, 0.06 * 0.18);
 }
 
+/* Behind drops of water each sample meets another surface: the albedo of a pixel has noise, and its light has another.
+ * A pixel whose albedo is small by chance is no dark detail. */
+TEST(noise_of_albedo_makes_no_bright_or_dark_pixels) {
+    static struct synthetic s;
+    double beyond = 0;
+    for (uint64_t seed = 1; seed <= 4; seed++) {
+        struct test_random random = {seed + 40};
+        begin(&s, 0.3F, 0.15F);
+        measure(&s, seed);
+        for (int i = 0; i < PIXELS; i++)
+            for (int h = 0; h < 2; h++)
+                for (int c = 0; c < 3; c++)
+                    s.pixels[i].features[h][DENOISE_ALBEDO + c] += 0.15F * (float)gaussian(&random);
+        run_part(&s, 2, 0, 0);
+        for (int y = 1; y < SIDE - 1; y++)
+            for (int x = 1; x < SIDE - 1; x++) {
+                double darkest = INFINITY, brightest = 0, own = (double)s.out[y * SIDE + x][1];
+                for (int i = 0; i < 9; i++) {
+                    double other = (double)s.out[(y + i / 3 - 1) * SIDE + x + i % 3 - 1][1];
+                    darkest = i == 4 ? darkest : fmin(darkest, other);
+                    brightest = i == 4 ? brightest : fmax(brightest, other);
+                }
+                beyond = fmax(beyond, fmax(darkest - own, own - brightest));
+            }
+    }
+    CHECK(beyond < 0.05 * 0.3);
+}
+
 /* A reflection along the rim of a ball, which no feature shows, in pixels whose noise is a third of it. */
 TEST(a_line_of_light_along_a_silhouette_keeps_three_quarters_of_its_contrast) {
     static struct synthetic s;
