@@ -13,9 +13,10 @@ static const float edge_depth = 0.05F, edge_distance = 8;
 static const float residual_distance = 10, residual_colour = 0.2F;
 /* How much of the mean residual is added: more than 1, since the mean of 7 x 7 pixels itself is blurred. */
 static const float residual_gain = 2.6F;
-/* The evidence that is necessary, and how fast the share then grows; and the product of the halves, in units of the
- * evidence, which is near zero or negative if the residuals are noise: of a bright path that one half found. */
-static const float evidence_limit = 0.6F, evidence_slope = 8, agreement_limit = 0.2F;
+/* The evidence that is necessary, and how fast the share then grows: beside fog, chance reaches 1. And the product of
+ * the halves, in units of the evidence, which is negative if the residuals are noise: of a bright path that one half
+ * found. */
+static const float evidence_limit = 0.6F, evidence_slope = 2, agreement_limit = -0.2F;
 
 static float surface_distance(const struct level *level, size_t p, size_t q) {
     float z = level->feature[DENOISE_DEPTH][p], difference = level->feature[DENOISE_DEPTH][q] - z;
