@@ -493,8 +493,11 @@ static bool add_solid(struct gltf_surface *s, const struct gltf_source *source, 
     if (!csg && !(csg = csg_build(arena, &leaf, 1, &token, 1, error)))
         return false;
     struct box box = csg->bounds;
-    struct solid_input input = {csg, primitive_node(source->world, source->primitive)->name,
-                                source->solid_share * vec3_max_abs(vec3_sub(box.max, box.min)), source->pool, true};
+    struct solid_input input = {.csg = csg,
+                                .name = primitive_node(source->world, source->primitive)->name,
+                                .tolerance = source->solid_share * vec3_max_abs(vec3_sub(box.max, box.min)),
+                                .pool = source->pool,
+                                .may_have_faults = true};
     struct solid_mesh mesh = {0};
     struct solid_findings findings;
     bool ok = solid_mesh_build(&input, &mesh, &findings, error);

@@ -235,7 +235,8 @@ static bool add_mesh(struct model_builder *b, const struct mesh *mesh, struct ex
 }
 
 static bool add_solid(struct model_builder *b, struct export_part *about, struct error *error) {
-    const struct solid_input input = {about->csg, about->name, b->tolerance, b->input->pool, false};
+    const struct solid_input input = {
+        .csg = about->csg, .name = about->name, .tolerance = b->tolerance, .pool = b->input->pool};
     struct solid_mesh mesh;
     struct solid_findings findings;
     if (!solid_mesh_build(&input, &mesh, &findings, error))

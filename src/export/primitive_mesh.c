@@ -50,7 +50,7 @@ bool primitive_mesh_build(const struct world *world, uint32_t primitive, double 
     struct solid_program program = {
         .leaves = arena_alloc_array(&arena, csg ? csg->leaf_count : 1, sizeof *program.leaves),
         .tokens = arena_alloc_array(&arena, csg ? csg->program_length : 1, sizeof *program.tokens)};
-    struct solid_input input = {NULL, primitive_node(world, primitive)->name, tolerance, pool, false};
+    struct solid_input input = {.name = primitive_node(world, primitive)->name, .tolerance = tolerance, .pool = pool};
     struct solid_mesh mesh = {0};
     struct solid_findings findings;
     bool ok = (program.leaves && program.tokens) || error_no_memory(error, "the mesh of a solid");

@@ -256,7 +256,7 @@ static bool check_solid(const char *what, const struct csg *csg, double toleranc
                         struct solid_mesh *mesh, struct error *error) {
     char warning[256];
     struct pool *pool = pool_create(2, warning);
-    const struct solid_input input = {csg, what, tolerance, pool, false};
+    const struct solid_input input = {.csg = csg, .name = what, .tolerance = tolerance, .pool = pool};
     struct solid_findings findings;
     struct check check;
     bool ok = solid_mesh_build(&input, mesh, &findings, error);
@@ -624,7 +624,8 @@ TEST(solids_that_touch_in_an_edge_are_separated_there) {
     const enum csg_operation plus = CSG_UNION;
     char warning[256];
     struct pool *pool = pool_create(1, warning);
-    const struct solid_input input = {solid_of(&arena, leaves, 2, &plus), "cubes", 5e-3, pool, false};
+    const struct solid_input input = {
+        .csg = solid_of(&arena, leaves, 2, &plus), .name = "cubes", .tolerance = 5e-3, .pool = pool};
     struct solid_mesh mesh;
     struct solid_findings findings;
     struct error error = {0};
