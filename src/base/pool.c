@@ -259,6 +259,52 @@ void pool_set_poll(struct pool *pool, void (*poll)(void *context), void *context
     pool->poll_context = context;
 }
 
+/* --- threads beside a pool --- */
+
+struct waiting_thread {
+    struct pool_threads *all;
+    pthread_t thread;
+    uint32_t item;
+};
+
+struct pool_threads {
+    pool_function *fn;
+    void *context;
+    int first_worker;
+    uint32_t count;
+    struct waiting_thread threads[];
+};
+
+static void *waiting_main(void *argument) {
+    const struct waiting_thread *self = argument;
+    self->all->fn(self->all->context, self->item, self->all->first_worker + (int)self->item);
+    return NULL;
+}
+
+struct pool_threads *pool_threads_start(uint32_t count, int first_worker, pool_function *fn, void *context) {
+    struct pool_threads *all = mem_alloc(sizeof *all + count * sizeof *all->threads);
+    if (!all)
+        return NULL;
+    *all = (struct pool_threads){.fn = fn, .context = context, .first_worker = first_worker};
+    while (all->count < count) {
+        struct waiting_thread *next = &all->threads[all->count];
+        *next = (struct waiting_thread){.all = all, .item = all->count};
+        if (start_thread(&next->thread, waiting_main, next) != 0)
+            break;
+        all->count++;
+    }
+    if (all->count > 0)
+        return all;
+    mem_free(all);
+    return NULL;
+}
+
+void pool_threads_join(struct pool_threads *threads) {
+    for (uint32_t i = 0; threads && i < threads->count; i++)
+        (void)pthread_join(threads->threads[i].thread, NULL);
+    mem_free(threads);
+}
+
 /* --- events --- */
 
 /* A futex: the kernel compares the number and sleeps in one step, so no signal is lost (U. Drepper, "Futexes Are

@@ -16,8 +16,10 @@ enum {
     BLOCKS = 4 /* of a processor of the card */,
     STACK_BYTES = 1 << 16 /* frames of functions that call themselves are not known before */,
     SMALLEST_WAVE = 1 << 12,
-    FIRST_WAVE = 1 << 14,
-    TILE_BYTES = FILM_TILE * FILM_TILE * sizeof(struct path_pixel)
+    FIRST_WAVE = 1 << 16,
+    LARGEST_WAVE = 1 << 22,
+    PIXEL_BYTES = PATH_ORDERS * FILM_TILE * FILM_TILE * sizeof(struct path_pixel),
+    ORDER_BYTES = PATH_ORDERS * sizeof(struct wave_order)
 };
 /* Of the free memory of the card, for orders. A launch lasts at most .05 s: waves shrink and grow between these. */
 static const double memory_share = 0.8, longest_launch = 0.025, shortest_launch = 0.005;
@@ -30,11 +32,11 @@ static const double memory_share = 0.8, longest_launch = 0.025, shortest_launch 
 #define KERNEL_NAME(member, name) "kernel_" name,
 enum kernel { KERNELS(KERNEL_MEMBER) KERNEL_COUNT };
 
-/* Memory on the card for an order. */
+/* Memory on the card for the waves of a thread. */
 struct card_stream {
     _Atomic bool taken;
     void *handle;
-    uint64_t wave, states, living[2], sorted, pixels, lanes; /* addresses on the card; 0: none yet */
+    uint64_t wave, orders, states, living[2], sorted, pixels, lanes; /* addresses on the card; 0: none yet */
 };
 
 struct cuda {
@@ -44,8 +46,7 @@ struct cuda {
     double begun;
     bool measures;
     int processors;
-    uint32_t slots;
-    struct card_stream *streams; /* slots */
+    struct card_stream streams[CUDA_STREAMS];
     /* Of the scene. */
     const struct path_scene *scene;
     uint64_t scene_on_card, scene_block;
@@ -109,17 +110,14 @@ static bool load_kernels(struct cuda *cuda, const struct file_bytes *kernels, st
     return ok;
 }
 
-struct cuda *cuda_create(const struct cuda_calls *calls, const struct file_bytes *kernels, uint32_t slots,
-                         bool measures, struct error *error) {
+struct cuda *cuda_create(const struct cuda_calls *calls, const struct file_bytes *kernels, bool measures,
+                         struct error *error) {
     struct cuda *cuda = mem_alloc_zero(1, sizeof *cuda);
-    struct card_stream *streams = cuda ? mem_alloc_zero(slots, sizeof *streams) : NULL;
-    if (!streams) {
-        mem_free(cuda);
+    if (!cuda) {
         (void)error_no_memory(error, "a card");
         return NULL;
     }
-    *cuda =
-        (struct cuda){.calls = calls, .slots = slots, .measures = measures, .streams = streams, .limit = FIRST_WAVE};
+    *cuda = (struct cuda){.calls = calls, .measures = measures, .limit = FIRST_WAVE};
     (void)pthread_mutex_init(&cuda->mutex, NULL);
     cuda->begun = clock_now();
     if (find_card(cuda, error) && load_kernels(cuda, kernels, error))
@@ -134,7 +132,6 @@ void cuda_destroy(struct cuda *cuda) {
     if (cuda->context) /* with all that it has */
         (void)cuda->calls->context_destroy(cuda->context);
     (void)pthread_mutex_destroy(&cuda->mutex);
-    mem_free(cuda->streams);
     mem_free(cuda);
 }
 
@@ -151,19 +148,18 @@ static uint64_t path_bytes(const struct cuda *cuda) {
 
 /* The most paths and lanes for which all streams fit into the memory of the card. */
 static bool divide_memory(struct cuda *cuda, size_t idle, struct error *error) {
-    enum { MAX_PATHS = 1 << 20 };
-    const uint64_t state = path_bytes(cuda), lane = path_lane_size(cuda->crossings), fixed = TILE_BYTES;
-    const uint64_t budget = (uint64_t)(memory_share * (double)idle) / cuda->slots;
+    const uint64_t state = path_bytes(cuda), lane = path_lane_size(cuda->crossings), fixed = PIXEL_BYTES + ORDER_BYTES;
+    const uint64_t budget = (uint64_t)(memory_share * (double)idle) / CUDA_STREAMS;
     const uint64_t wanted = (uint64_t)cuda->processors * THREADS * BLOCKS;
     const uint64_t needed = SMALLEST_WAVE * state + THREADS * lane + fixed;
     if (budget < needed)
         return error_set(
             error, ERROR_MACHINE, "the card cannot be used: it has %llu MB of memory free, and %llu MB are needed",
-            (unsigned long long)idle >> 20, (unsigned long long)((double)(needed * cuda->slots) / memory_share) >> 20);
+            (unsigned long long)idle >> 20, (unsigned long long)((double)(needed * CUDA_STREAMS) / memory_share) >> 20);
     const uint64_t lanes = (budget - fixed) / 2 / lane / THREADS * THREADS;
     cuda->lanes = (uint32_t)(lanes < THREADS ? THREADS : lanes < wanted ? lanes : wanted);
     const uint64_t paths = (budget - fixed - cuda->lanes * lane) / state;
-    cuda->room = (uint32_t)(paths < MAX_PATHS ? paths : MAX_PATHS);
+    cuda->room = (uint32_t)(paths < LARGEST_WAVE ? paths : LARGEST_WAVE);
     return true;
 }
 
@@ -173,10 +169,11 @@ static bool try_samples(struct cuda *cuda, const struct path_device *here, struc
     struct path_pixel pixels[2][PIXELS];
     struct path_counts counts = {0};
     const struct path_order order = path_scene_trial(cuda->scene, 8, 2);
+    const struct path_orders of_card = {&order, 1, pixels[0]}, of_here = {&order, 1, pixels[1]};
     const struct path_device card = cuda_device(cuda);
     memset(pixels, 0, sizeof pixels);
-    if (path_order_pixels(&order) > PIXELS || !here->make(here->context, &order, pixels[0], &counts) ||
-        !card.make(card.context, &order, pixels[1], &counts))
+    if (path_order_pixels(&order) > PIXELS || !here->make(here->context, &of_here, &counts) ||
+        !card.make(card.context, &of_card, &counts))
         return error_set(error, ERROR_MACHINE, "the card could not be tried");
     const char *reason = cuda_lost(cuda);
     if (reason)
@@ -186,23 +183,27 @@ static bool try_samples(struct cuda *cuda, const struct path_device *here, struc
     return true;
 }
 
-/* Samples a second: orders of a tile, each with four times as many, until .1 s are over. */
+/* Samples a second: orders of a tile, each time with four times as many paths, until .1 s are over. */
 static bool measure(struct cuda *cuda, struct error *error) {
     static const double seconds = 0.1;
-    struct path_pixel *pixels = mem_alloc_zero(FILM_TILE * FILM_TILE, sizeof *pixels);
+    const size_t tile = FILM_TILE * FILM_TILE * sizeof(struct path_pixel);
     const struct path_device card = cuda_device(cuda);
     const double end = clock_now() + seconds;
-    if (!pixels)
+    struct path_order all[PATH_ORDERS];
+    struct path_orders orders = {all, 1, mem_alloc_zero(PATH_ORDERS, tile)};
+    if (!orders.pixels)
         return error_no_memory(error, "a card");
-    for (uint32_t samples = 1; clock_now() < end && samples <= 256 && !cuda_lost(cuda); samples *= 4) {
-        const struct path_order order = path_scene_trial(cuda->scene, FILM_TILE, samples);
+    for (uint32_t more = 1; clock_now() < end && more <= 1 << 14 && !cuda_lost(cuda); more *= 4) {
         struct path_counts counts = {0};
-        memset(pixels, 0, FILM_TILE * FILM_TILE * sizeof *pixels);
+        orders.count = more < PATH_ORDERS ? more : PATH_ORDERS;
+        for (uint32_t i = 0; i < orders.count; i++)
+            all[i] = path_scene_trial(cuda->scene, FILM_TILE, more / orders.count);
+        memset(orders.pixels, 0, orders.count * tile);
         const double begun = clock_now();
-        (void)card.make(card.context, &order, pixels, &counts);
-        cuda->statistics.rate = (double)path_order_paths(&order) / (clock_now() - begun + 1e-9);
+        (void)card.make(card.context, &orders, &counts);
+        cuda->statistics.rate = (double)path_orders_paths(&orders) / (clock_now() - begun + 1e-9);
     }
-    mem_free(pixels);
+    mem_free(orders.pixels);
     const char *reason = cuda_lost(cuda);
     return !reason || error_set(error, ERROR_MACHINE, "%s", reason);
 }
@@ -226,8 +227,9 @@ bool cuda_open_scene(struct cuda *cuda, void *bytes, size_t size, const struct p
     (void)snprintf(statistics->name, sizeof statistics->name, "%.*s", (int)sizeof statistics->name - 1, cuda->name);
     statistics->start_seconds = clock_now() - cuda->begun;
     statistics->lanes = cuda->lanes;
-    const uint64_t stream = cuda->room * path_bytes(cuda) + cuda->lanes * path_lane_size(cuda->crossings) + TILE_BYTES;
-    statistics->bytes = size + cuda->slots * stream;
+    const uint64_t stream =
+        cuda->room * path_bytes(cuda) + cuda->lanes * path_lane_size(cuda->crossings) + PIXEL_BYTES + ORDER_BYTES;
+    statistics->bytes = size + CUDA_STREAMS * stream;
     return true;
 }
 
@@ -239,9 +241,9 @@ struct device_statistics cuda_statistics(struct cuda *cuda) {
 
 /* --- orders --- */
 
-/* A stream of its own for each order: there are as many as threads. */
+/* A stream of its own for each thread. */
 static struct card_stream *take_stream(struct cuda *cuda) {
-    for (uint32_t i = 0; i < cuda->slots; i++)
+    for (uint32_t i = 0; i < CUDA_STREAMS; i++)
         if (!atomic_exchange(&cuda->streams[i].taken, true))
             return &cuda->streams[i];
     return NULL;
@@ -255,7 +257,8 @@ static bool fill_stream(struct cuda *cuda, struct card_stream *stream, struct er
            CALL(cuda, error, take, &stream->wave, sizeof(struct wave)) &&
            CALL(cuda, error, take, &stream->states, states) && CALL(cuda, error, take, &stream->living[0], list) &&
            CALL(cuda, error, take, &stream->living[1], list) && CALL(cuda, error, take, &stream->sorted, list) &&
-           CALL(cuda, error, take, &stream->pixels, TILE_BYTES) &&
+           CALL(cuda, error, take, &stream->pixels, PIXEL_BYTES) &&
+           CALL(cuda, error, take, &stream->orders, ORDER_BYTES) &&
            CALL(cuda, error, take, &stream->lanes, cuda->lanes * path_lane_size(cuda->crossings));
 }
 
@@ -292,7 +295,7 @@ static bool run_wave(struct cuda *cuda, const struct card_stream *stream, struct
         const double seconds = clock_now() - start;
         longest = seconds > longest ? seconds : longest;
     }
-    ok = ok && launch(cuda, stream, KERNEL_ADD, wave_pixels(wave), 0, error) &&
+    ok = ok && launch(cuda, stream, KERNEL_ADD, wave->count /* or fewer pixels */, 0, error) &&
          CALL(cuda, error, stream_wait, stream->handle);
     const uint32_t limit = atomic_load(&cuda->limit);
     if (longest > longest_launch && limit > SMALLEST_WAVE)
@@ -302,21 +305,25 @@ static bool run_wave(struct cuda *cuda, const struct card_stream *stream, struct
     return ok;
 }
 
-static bool run_order(struct cuda *cuda, struct card_stream *stream, const struct path_order *order,
-                      struct path_pixel *pixels, struct path_counts *counts, struct error *error) {
-    const uint64_t paths = path_order_paths(order);
-    const size_t size = (size_t)path_order_pixels(order) * sizeof *pixels;
+static bool run_orders(struct cuda *cuda, struct card_stream *stream, const struct path_orders *orders,
+                       struct path_counts *counts, struct error *error) {
+    const uint64_t paths = path_orders_paths(orders);
+    const size_t size = (size_t)path_orders_pixels(orders) * sizeof *orders->pixels;
+    struct wave_order numbered[PATH_ORDERS];
     if (!CALL(cuda, error, context_use, cuda->context) || !fill_stream(cuda, stream, error))
         return false;
+    wave_number_orders(orders, numbered);
     /* Addresses on the card have the size of those here. */
     struct wave wave = {.scene = (const struct path_scene *)(uintptr_t)cuda->scene_on_card,
-                        .order = *order,
+                        .orders = (const struct wave_order *)(uintptr_t)stream->orders,
+                        .order_count = orders->count,
                         .pixels = (struct path_pixel *)(uintptr_t)stream->pixels,
                         .states = (char *)(uintptr_t)stream->states,
                         .sorted = (uint32_t *)(uintptr_t)stream->sorted,
                         .state_size = path_wave_state_size(cuda->scene),
                         .living = {(uint32_t *)(uintptr_t)stream->living[0], (uint32_t *)(uintptr_t)stream->living[1]}};
-    bool ok = CALL(cuda, error, upload, stream->pixels, pixels, size, stream->handle) &&
+    bool ok = CALL(cuda, error, upload, stream->pixels, orders->pixels, size, stream->handle) &&
+              CALL(cuda, error, upload, stream->orders, numbered, orders->count * sizeof *numbered, stream->handle) &&
               launch(cuda, stream, KERNEL_LANES, cuda->lanes, 0, error);
     for (; ok && wave.first < paths; wave.first += wave.count) {
         uint32_t limit = atomic_load(&cuda->limit);
@@ -327,24 +334,24 @@ static bool run_order(struct cuda *cuda, struct card_stream *stream, const struc
     ok = ok && launch(cuda, stream, KERNEL_FINISH, 1, cuda->lanes, error) &&
          CALL(cuda, error, download, &wave, stream->wave, sizeof wave, stream->handle) &&
          CALL(cuda, error, stream_wait, stream->handle) &&
-         CALL(cuda, error, download, pixels, stream->pixels, size, stream->handle) &&
+         CALL(cuda, error, download, orders->pixels, stream->pixels, size, stream->handle) &&
          CALL(cuda, error, stream_wait, stream->handle);
     if (ok && wave.met_fault)
-        wave_leave_pixels(order, pixels);
+        wave_leave_pixels(orders);
     if (ok)
         path_counts_add(counts, &wave.counts);
     return ok;
 }
 
 /* What a lost card leaves, the threads of the render make. */
-static bool make(void *context, const struct path_order *order, struct path_pixel *pixels, struct path_counts *counts) {
+static bool make(void *context, const struct path_orders *orders, struct path_counts *counts) {
     struct cuda *cuda = context;
     struct error error;
     struct card_stream *stream = atomic_load(&cuda->is_lost) ? NULL : take_stream(cuda);
     if (!stream)
         return true;
-    if (!run_order(cuda, stream, order, pixels, counts, &error)) {
-        wave_leave_pixels(order, pixels);
+    if (!run_orders(cuda, stream, orders, counts, &error)) {
+        wave_leave_pixels(orders);
         (void)pthread_mutex_lock(&cuda->mutex);
         if (!atomic_load(&cuda->is_lost))
             (void)snprintf(cuda->reason, sizeof cuda->reason, "%.*s", (int)sizeof cuda->reason - 1, error.text);

@@ -9,11 +9,10 @@
 
 struct cuda;
 
-/* The driver, the first card, and the kernels of a file (kernels_file_open). slots: orders at a time. measures: each
- * scene begins with a trial of the rate. calls must outlive it. Errors name the call of the driver and what it said.
- * NULL. */
-struct cuda *cuda_create(const struct cuda_calls *calls, const struct file_bytes *kernels, uint32_t slots,
-                         bool measures, struct error *error);
+/* The driver, the first card, and the kernels of a file (kernels_file_open). measures: each scene begins with a trial
+ * of the rate. calls must outlive it. Errors name the call of the driver and what it said. NULL. */
+struct cuda *cuda_create(const struct cuda_calls *calls, const struct file_bytes *kernels, bool measures,
+                         struct error *error);
 void cuda_destroy(struct cuda *cuda);
 /* Copies a scene to the card, and lets the card make a few samples of the middle of the picture, which must have the
  * bits that `here` gives them, a device of this process. bytes: of the bundle, not opened; they are not needed
@@ -21,6 +20,9 @@ void cuda_destroy(struct cuda *cuda);
  * memory needed and free; other bits. */
 bool cuda_open_scene(struct cuda *cuda, void *bytes, size_t size, const struct path_scene *scene,
                      const struct path_device *here, struct error *error);
+/* So many threads may use it at a time: while one ends its last paths, the others fill the card. What more threads
+ * want is left. */
+enum { CUDA_STREAMS = 4 };
 /* Its orders; `begin` is NULL. It may be used until the end of cuda. */
 struct path_device cuda_device(struct cuda *cuda);
 /* Until now. */

@@ -15,9 +15,10 @@ enum slot_state { SLOT_FREE, SLOT_TAKEN, SLOT_ASKED, SLOT_WORKED, SLOT_MADE, SLO
 
 struct slot {
     _Atomic uint32_t state;
-    struct path_order order;
+    uint32_t count; /* orders */
+    struct path_order orders[PATH_ORDERS];
     struct path_counts counts;
-    struct path_pixel pixels[FILM_TILE * FILM_TILE];
+    struct path_pixel pixels[PATH_ORDERS * FILM_TILE * FILM_TILE];
 };
 
 /* Closed: before it was ready, or after. */
@@ -90,17 +91,29 @@ static bool order_fits(const struct path_order *order) {
            order->y1 - order->y0 <= FILM_TILE && order->begin < order->end;
 }
 
-/* The order is copied: the other process may change it. */
+/* The orders are copied: the other process may change them. */
+static bool copy_orders(const struct slot *slot, struct path_order *copy, uint32_t *count) {
+    *count = slot->count;
+    if (*count < 1 || *count > PATH_ORDERS)
+        return false;
+    memcpy(copy, slot->orders, *count * sizeof *copy);
+    for (uint32_t i = 0; i < *count; i++)
+        if (!order_fits(&copy[i]))
+            return false;
+    return true;
+}
+
 static bool make_any(const struct service *service) {
     for (uint32_t i = 0; i < service->slots; i++) {
         struct slot *slot = &service->link->slots[i];
         uint32_t asked = SLOT_ASKED, worked = SLOT_WORKED;
         if (!atomic_compare_exchange_strong(&slot->state, &asked, SLOT_WORKED))
             continue;
-        const struct path_order order = slot->order;
+        struct path_order copy[PATH_ORDERS];
+        struct path_orders orders = {.all = copy, .pixels = slot->pixels};
         slot->counts = (struct path_counts){0};
-        if (order_fits(&order))
-            (void)service->device.make(service->device.context, &order, slot->pixels, &slot->counts);
+        if (copy_orders(slot, copy, &orders.count))
+            (void)service->device.make(service->device.context, &orders, &slot->counts);
         if (service->cuda)
             atomic_store(&service->link->launches, cuda_statistics(service->cuda).launches);
         if (!atomic_compare_exchange_strong(&slot->state, &worked, SLOT_MADE))
@@ -139,7 +152,7 @@ static bool open_scene(struct emulation *emulation, struct cuda *cuda, void *sce
 bool device_link_serve(struct device_link *link, struct cuda *cuda, void *scene, size_t size, uint32_t slots,
                        struct error *error) {
     char ignored[256];
-    struct pool *pool = pool_create((int)slots, ignored);
+    struct pool *pool = pool_create((int)(cuda ? CUDA_STREAMS : slots), ignored);
     struct emulation *emulation = pool ? emulation_create(pool, 0, 0) : NULL;
     bool ok = emulation && open_scene(emulation, cuda, scene, size, error);
     if (!emulation)
@@ -150,7 +163,7 @@ bool device_link_serve(struct device_link *link, struct cuda *cuda, void *scene,
         link->statistics = cuda ? cuda_statistics(cuda) : (struct device_statistics){.name = "emulation"};
         (void)atomic_compare_exchange_strong(&link->state, &starts, LINK_READY);
         pool_signal(&link->answered);
-        (void)pool_run(pool, slots, serve, &service);
+        (void)pool_run(pool, (uint32_t)pool_workers(pool), serve, &service);
         const char *lost = cuda ? cuda_lost(cuda) : NULL;
         ok = !lost || error_set(error, ERROR_MACHINE, "%s", lost);
     }
@@ -184,15 +197,15 @@ static struct slot *take_slot(const struct device_client *client) {
     return NULL;
 }
 
-bool device_client_make(struct device_client *client, const struct path_order *order, struct path_pixel *pixels,
-                        struct path_counts *counts) {
+bool device_client_make(struct device_client *client, const struct path_orders *orders, struct path_counts *counts) {
     struct device_link *link = client->link;
-    const size_t size = (size_t)path_order_pixels(order) * sizeof *pixels;
+    const size_t size = (size_t)path_orders_pixels(orders) * sizeof *orders->pixels;
     struct slot *slot = take_slot(client);
     if (!slot)
         return !pool_cancelled(client->pool);
-    slot->order = *order;
-    memcpy(slot->pixels, pixels, size);
+    slot->count = orders->count;
+    memcpy(slot->orders, orders->all, orders->count * sizeof *orders->all);
+    memcpy(slot->pixels, orders->pixels, size);
     atomic_store(&slot->state, SLOT_ASKED);
     pool_signal(&link->asked);
     for (;;) {
@@ -207,7 +220,7 @@ bool device_client_make(struct device_client *client, const struct path_order *o
         }
         pool_wait(&link->answered, seen, patience);
     }
-    memcpy(pixels, slot->pixels, size);
+    memcpy(orders->pixels, slot->pixels, size);
     path_counts_add(counts, &slot->counts);
     atomic_store(&slot->state, SLOT_FREE);
     return true;

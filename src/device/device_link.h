@@ -8,15 +8,15 @@
 #include "render/path_wave.h"
 
 struct device_link;
-/* Bytes for so many orders at a time; they are zero at the start. */
+/* Bytes for so many groups of orders at a time; they are zero at the start. */
 size_t device_link_size(uint32_t slots);
 /* Ends the exchange. Calls that wait for the other process return, and later calls do not wait. Both processes may
  * close the link. */
 void device_link_close(struct device_link *link);
 
 /* The device process: opens the bundle of a scene and makes orders until the link is closed, with a thread for each
- * slot. cuda: the card, with as many slots; NULL: the emulation. False: the bundle is damaged, no memory, or the card
- * was lost; what is not made then, threads make. */
+ * stream of the card, or for each slot. cuda: the card; NULL: the emulation. False: the bundle is damaged, no memory,
+ * or the card was lost; what is not made then, threads make. */
 struct cuda;
 bool device_link_serve(struct device_link *link, struct cuda *cuda, void *scene, size_t size, uint32_t slots,
                        struct error *error);
@@ -39,7 +39,6 @@ struct device_client {
 /* Waits until the device is ready. False: it is not; the link is closed. */
 bool device_client_wait(const struct device_client *client);
 /* Its `make`, of struct path_device. */
-bool device_client_make(struct device_client *client, const struct path_order *order, struct path_pixel *pixels,
-                        struct path_counts *counts);
+bool device_client_make(struct device_client *client, const struct path_orders *orders, struct path_counts *counts);
 
 #endif

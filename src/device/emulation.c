@@ -37,9 +37,10 @@ const struct path_scene *emulation_scene(const struct emulation *emulation) {
     return emulation->scene;
 }
 
-static bool begin(void *context, struct bundle *scene, struct error *error) {
+static bool begin(void *context, struct bundle *scene, bool *is_used, struct error *error) {
     struct emulation *emulation = context;
     const size_t size = bundle_size(scene);
+    *is_used = true;
     mem_free(emulation->bytes);
     emulation->bytes = mem_alloc_aligned(64, size);
     if (!emulation->bytes)
@@ -93,13 +94,19 @@ static void check_numbers(const struct path_pixel *pixel) {
         UNREACHABLE("NaN in a record");
 }
 
-static bool make(void *context, const struct path_order *order, struct path_pixel *pixels, struct path_counts *counts) {
+static bool make(void *context, const struct path_orders *orders, struct path_counts *counts) {
     const struct emulation *emulation = context;
     const struct path_scene *scene = emulation->scene;
-    const uint64_t paths = path_order_paths(order);
+    const uint64_t paths = path_orders_paths(orders);
     const uint32_t crossings = emulation->crossings > 0 ? emulation->crossings : path_scene_crossings(scene);
-    struct wave wave = {.scene = scene, .order = *order, .pixels = pixels, .state_size = path_wave_state_size(scene)};
+    struct wave_order numbered[PATH_ORDERS];
+    struct wave wave = {.scene = scene,
+                        .orders = numbered,
+                        .order_count = orders->count,
+                        .pixels = orders->pixels,
+                        .state_size = path_wave_state_size(scene)};
     const uint32_t room = paths < emulation->wave ? (uint32_t)paths : emulation->wave;
+    wave_number_orders(orders, numbered);
     wave.states = mem_alloc(room * wave.state_size);
     wave.living[0] = mem_alloc(room * sizeof *wave.living[0]);
     wave.living[1] = mem_alloc(room * sizeof *wave.living[1]);
@@ -113,9 +120,9 @@ static bool make(void *context, const struct path_order *order, struct path_pixe
         goes_on = run_wave(emulation, &wave, lane);
     }
     if (goes_on && path_scene_met_fault(scene))
-        wave_leave_pixels(order, pixels);
-    for (uint64_t i = 0; goes_on && i < path_order_pixels(order); i++)
-        check_numbers(&pixels[i]);
+        wave_leave_pixels(orders);
+    for (uint64_t i = 0; goes_on && i < path_orders_pixels(orders); i++)
+        check_numbers(&orders->pixels[i]);
     if (lane) {
         const struct path_counts made = path_lane_counts(lane);
         path_counts_add(counts, &made);

@@ -9,8 +9,31 @@ static void keep_alive(struct wave *wave, uint32_t turn, uint32_t i) {
     wave->living[turn % 2][__atomic_fetch_add(&wave->living_count[turn % 2], 1, __ATOMIC_RELAXED)] = i;
 }
 
+/* The order of a path, or of a pixel. */
+static const struct wave_order *order_of(const struct wave *wave, uint64_t number, bool of_pixel) {
+    uint32_t first = 0, count = wave->order_count;
+    while (count > 1) {
+        const uint32_t half = count / 2;
+        const struct wave_order *middle = &wave->orders[first + half];
+        const bool is_behind = (of_pixel ? middle->pixel : middle->path) <= number;
+        first += is_behind ? half : 0;
+        count = is_behind ? count - half : half;
+    }
+    return &wave->orders[first];
+}
+
+static uint32_t samples_of(const struct path_order *order) {
+    return order->end - order->begin;
+}
+
+static uint64_t pixel_of(const struct wave *wave, uint64_t path) {
+    const struct wave_order *order = order_of(wave, path, false);
+    return order->pixel + (path - order->path) / samples_of(&order->order);
+}
+
 void wave_begin(struct wave *wave, struct path_lane *lane, uint32_t i) {
-    if (path_wave_begin(wave->scene, lane, state_of(wave, i), &wave->order, wave->first + i))
+    const struct wave_order *order = order_of(wave, wave->first + i, false);
+    if (path_wave_begin(wave->scene, lane, state_of(wave, i), &order->order, wave->first + i - order->path))
         keep_alive(wave, 0, i);
 }
 
@@ -44,27 +67,33 @@ void wave_clear_next(struct wave *wave, uint32_t turn) {
         wave->class_count[c] = wave->class_used[c] = 0;
 }
 
-/* The samples of a pixel that the order has. */
-static uint32_t samples_of(const struct wave *wave) {
-    return wave->order.end - wave->order.begin;
-}
-
 uint32_t wave_pixels(const struct wave *wave) {
-    const uint64_t last = wave->first + wave->count - 1;
-    return (uint32_t)(last / samples_of(wave) - wave->first / samples_of(wave)) + 1;
+    return (uint32_t)(pixel_of(wave, wave->first + wave->count - 1) - pixel_of(wave, wave->first)) + 1;
 }
 
 void wave_add(struct wave *wave, struct path_lane *lane, uint32_t i) {
-    const uint64_t each = samples_of(wave), number = wave->first / each + i, end = wave->first + wave->count;
+    const uint64_t number = pixel_of(wave, wave->first) + i, end = wave->first + wave->count;
+    const struct wave_order *order = order_of(wave, number, true);
+    const uint32_t each = samples_of(&order->order);
+    const uint64_t first = order->path + (number - order->pixel) * each;
     struct path_pixel *pixel = &wave->pixels[number];
-    uint64_t path = number * each > wave->first ? number * each : wave->first;
-    for (; path < (number + 1) * each && path < end; path++)
-        if (pixel->samples == wave->order.begin + (uint32_t)(path % each))
+    for (uint64_t path = first > wave->first ? first : wave->first; path < first + each && path < end; path++)
+        if (pixel->samples == order->order.begin + (uint32_t)(path - first))
             (void)path_wave_add(wave->scene, lane, state_of(wave, (uint32_t)(path - wave->first)), pixel);
 }
 
-void wave_leave_pixels(const struct path_order *order, struct path_pixel *pixels) {
-    const uint64_t count = path_order_pixels(order);
-    for (uint64_t i = 0; i < count; i++)
-        pixels[i].samples = order->begin;
+void wave_leave_pixels(const struct path_orders *orders) {
+    struct path_pixel *pixel = orders->pixels;
+    for (uint32_t i = 0; i < orders->count; i++)
+        for (uint64_t k = path_order_pixels(&orders->all[i]); k > 0; k--)
+            (pixel++)->samples = orders->all[i].begin;
+}
+
+void wave_number_orders(const struct path_orders *orders, struct wave_order *out) {
+    uint64_t path = 0, pixel = 0;
+    for (uint32_t i = 0; i < orders->count; i++) {
+        out[i] = (struct wave_order){orders->all[i], path, pixel};
+        path += path_order_paths(&orders->all[i]);
+        pixel += path_order_pixels(&orders->all[i]);
+    }
 }

@@ -1,15 +1,22 @@
-/* Paths of an order that are in flight together. A kernel does one thing with one of them; the thread indices of a card
+/* Paths of orders that are in flight together. A kernel does one thing with one of them; the thread indices of a card
  * or a loop of the emulation choose which. All memory is that of who launches kernels. */
 #ifndef GRAY_DEVICE_WAVE_INTERNAL_H
 #define GRAY_DEVICE_WAVE_INTERNAL_H
 
 #include "render/path_wave.h"
 
+/* An order, and the numbers of its first path and pixel among those of all orders that are made together. */
+struct wave_order {
+    struct path_order order;
+    uint64_t path, pixel;
+};
+
 struct wave {
     const struct path_scene *scene;
-    struct path_order order;
-    struct path_pixel *pixels; /* of the order, row by row */
-    uint64_t first;            /* path of the order */
+    const struct wave_order *orders;
+    uint32_t order_count;
+    struct path_pixel *pixels; /* of all orders */
+    uint64_t first;            /* path of the wave */
     uint32_t count;            /* of paths */
     char *states;
     uint64_t state_size; /* path_wave_state_size */
@@ -17,7 +24,7 @@ struct wave {
     uint32_t living_count[2];
     uint32_t *sorted; /* those of the turn by their classes (path_wave_class); room for `count` */
     uint32_t class_count[PATH_CLASSES], class_used[PATH_CLASSES]; /* of the turn: paths, and those in `sorted` */
-    struct path_counts counts;                                    /* of all waves of the order, when they are made */
+    struct path_counts counts;                                    /* of all waves, when they are made */
     bool met_fault;
 };
 
@@ -35,6 +42,8 @@ void wave_clear_next(struct wave *wave, uint32_t turn);
 void wave_add(struct wave *wave, struct path_lane *lane, uint32_t i);
 uint32_t wave_pixels(const struct wave *wave);
 /* From a fault of the scene on, threads make all pixels, and note where it is. */
-void wave_leave_pixels(const struct path_order *order, struct path_pixel *pixels);
+void wave_leave_pixels(const struct path_orders *orders);
+/* out: orders->count of them. */
+void wave_number_orders(const struct path_orders *orders, struct wave_order *out);
 
 #endif

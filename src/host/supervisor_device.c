@@ -19,14 +19,14 @@
 #include <unistd.h>
 
 /* Driver and kernels need files and memory that is executed, so they are loaded before the rights go. */
-static struct cuda *open_card(struct cuda_calls *calls, uint32_t slots, bool measures, struct error *error) {
+static struct cuda *open_card(struct cuda_calls *calls, bool measures, struct error *error) {
     char name[4096 + sizeof "gray-kernels"] = "";
     char *slash = file_canonical("/proc/self/exe", name, 4096) ? strrchr(name, '/') : NULL;
     (void)strcpy(slash ? slash + 1 : name, "gray-kernels");
     struct file_bytes kernels;
     if (!cuda_calls_load(calls, error) || !kernels_file_open(name, &kernels, error))
         return NULL;
-    struct cuda *cuda = cuda_create(calls, &kernels, slots, measures, error);
+    struct cuda *cuda = cuda_create(calls, &kernels, measures, error);
     file_unmap(&kernels);
     return cuda;
 }
@@ -50,7 +50,7 @@ static _Noreturn void run_as_device(struct supervisor *supervisor, pid_t parent,
     if (is_confined)
         confine_descriptors(STDERR_FILENO);
     ok = ok &&
-         (!is_card || (cuda = open_card(&calls, slots, supervisor->options->device == DEVICE_AUTO, &error)) != NULL) &&
+         (!is_card || (cuda = open_card(&calls, supervisor->options->device == DEVICE_AUTO, &error)) != NULL) &&
          (!is_confined || confine_device(is_card, report, sizeof report, &error)) &&
          device_link_serve(link.block, cuda, bytes, size, slots, &error);
     if (!ok && link.block)

@@ -103,6 +103,10 @@ bool integrator_render(struct renderer *renderer, struct worker *worker, const s
     UNREACHABLE(no_kind);
 }
 
+bool integrator_render_by_device(struct renderer *renderer, struct worker *worker) {
+    return path_tracer_render_by_device(&renderer->integrator->path, renderer, worker);
+}
+
 struct colour integrator_radiance(struct renderer *renderer, struct worker *worker, const struct ray *ray,
                                   uint64_t key) {
     switch (renderer->integrator->kind) {

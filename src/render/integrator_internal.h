@@ -23,6 +23,8 @@ void integrator_destroy(struct integrator *integrator); /* NULL is fine */
 
 /* Renders the pixels of a rectangle within a tile and stores them in the film. False: stopped before the end. */
 bool integrator_render(struct renderer *renderer, struct worker *worker, const struct film_rectangle *part);
+/* The same for all parts of worker->for_device, in a pass without a limit of noise. */
+bool integrator_render_by_device(struct renderer *renderer, struct worker *worker);
 /* The radiance along a camera ray, clamped to the range of float. worker->state has the sampler of the sample and
  * the media around the eye. key: the random key of the ray. */
 struct colour integrator_radiance(struct renderer *renderer, struct worker *worker, const struct ray *ray,

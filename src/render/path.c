@@ -3,6 +3,7 @@
 #include "render/path_internal.h"
 
 #include "base/clock.h"
+#include "base/mem.h"
 #include "base/random.h"
 #include "math/elementary.h"
 #include "render/integrator_internal.h"
@@ -39,7 +40,7 @@ bool path_has_parts(const struct settings *settings) {
 
 /* Storage for the parts of a batch of samples, one for each worker. */
 static bool make_sample_parts(struct path_tracer *tracer, struct renderer *renderer) {
-    for (int i = 0; i < pool_workers(renderer->pool); i++) {
+    for (int i = 0; i < renderer->worker_count; i++) {
         struct path_parts *parts = arena_alloc(&tracer->arena, PACKET_RAYS * sizeof *parts);
         if (!parts)
             return false;
@@ -53,7 +54,7 @@ static bool make_tile_films(struct path_tracer *tracer, struct renderer *rendere
     struct film_record record = renderer->job->film->record;
     struct error ignored;
     size_t bytes;
-    int workers = pool_workers(renderer->pool);
+    int workers = renderer->worker_count;
     if (!(tracer->noise > 0))
         return true;
     tracer->tiles = arena_alloc_array(&tracer->arena, (size_t)workers, sizeof *tracer->tiles);
@@ -69,7 +70,7 @@ static bool make_tile_films(struct path_tracer *tracer, struct renderer *rendere
 
 static bool make_contours(struct path_tracer *tracer, struct renderer *renderer) {
     double width = settings_line_width(&renderer->job->settings);
-    int workers = pool_workers(renderer->pool);
+    int workers = renderer->worker_count;
     if (!(width > 0))
         return true;
     tracer->contours = arena_alloc_array(&tracer->arena, (size_t)workers, sizeof *tracer->contours);
@@ -229,12 +230,13 @@ static bool begin_device(struct path_tracer *tracer, struct renderer *renderer, 
     struct bundle *scene = path_scene_bundle(tracer, renderer);
     if (!scene)
         return error_no_memory(error, "the scene for a device");
-    bool ok = device->begin(device->context, scene, error);
+    bool is_used = false, ok = device->begin(device->context, scene, &is_used, error);
     bundle_destroy(scene);
-    for (int i = 0; ok && i < pool_workers(renderer->pool); i++) {
-        struct worker *worker = &renderer->workers[i];
-        worker->pixels = arena_alloc_array(&tracer->arena, (size_t)FILM_TILE * FILM_TILE, sizeof *worker->pixels);
-        ok = worker->pixels || error_no_memory(error, "the workers of a render");
+    /* The last workers wait for the device; if there are only those of the processor, these do. */
+    const int first = device->waiting > 0 ? pool_workers(renderer->pool) : 0;
+    for (int i = first; ok && is_used && i < renderer->worker_count; i++) {
+        renderer->workers[i].for_device = mem_alloc_zero(1, sizeof *renderer->workers[i].for_device);
+        ok = renderer->workers[i].for_device || error_no_memory(error, "the workers of a render");
     }
     return ok;
 }
@@ -387,39 +389,65 @@ static void count_of_device(struct worker *worker, const struct path_counts *cou
     state->clamped = state->clamped || counts->clamped;
 }
 
-/* The same for a rectangle, by the device. What it leaves out the worker makes. */
-static bool sample_by_device(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
-                             const struct sample_plan *plan, struct sample_range range) {
-    const struct film_rectangle *part = plan->part;
+/* Orders for these samples of a part of the film, with the pixels as they are before. False: no memory. */
+static bool order_part(const struct path_tracer *tracer, struct worker *worker, const struct film *film,
+                       const struct film_rectangle *part, struct sample_range range) {
+    struct device_work *work = worker->for_device;
+    const struct path_orders before = {work->orders, work->count, NULL};
     const struct path_order order = {part->x0, part->y0, part->x1, part->y1, range.begin, range.end};
+    const size_t first = (size_t)path_orders_pixels(&before), needed = first + (size_t)path_order_pixels(&order);
     const struct contour *lines = tracer->contours ? &tracer->contours[worker->index] : NULL;
-    struct path_pixel *pixels = worker->pixels, *pixel = pixels;
+    if (needed > work->room) {
+        const size_t room = needed > 2 * work->room ? needed : 2 * work->room;
+        struct path_pixel *pixels = mem_resize_array(work->pixels, room, sizeof *pixels);
+        if (!pixels)
+            return !(worker->scratch.failed = true);
+        work->pixels = pixels;
+        work->room = room;
+    }
+    work->parts[work->count] = *part;
+    work->orders[work->count++] = order;
+    struct path_pixel *pixel = work->pixels + first;
     for (uint32_t y = part->y0; y < part->y1; y++)
         for (uint32_t x = part->x0; x < part->x1; x++)
-            *pixel++ = begin_pixel(tracer, plan->film, lines, x, y, range.begin);
-    struct path_counts counts = {0};
-    bool goes_on = renderer->job->device->make(renderer->job->device->context, &order, pixels, &counts);
-    count_of_device(worker, &counts);
-    if (!goes_on)
-        return false;
-    pixel = pixels;
-    for (uint32_t y = part->y0; y < part->y1; y++)
-        for (uint32_t x = part->x0; x < part->x1; x++, pixel++) {
-            const struct film_rectangle one = {x, y, x + 1, y + 1};
-            const struct sample_plan single = {plan->film, &one, plan->before, plan->expected};
-            if (pixel->samples == range.end)
-                finish_pixel(plan->film, worker, x, y, pixel);
-            else if (!sample_row(tracer, renderer, worker, &single, y, range))
-                return false;
-        }
+            *pixel++ = begin_pixel(tracer, film, lines, x, y, range.begin);
     return true;
+}
+
+/* Has the orders of the worker made. What the device leaves out the worker makes. plan: its part is of no use. False:
+ * stopped. */
+static bool make_orders(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
+                        const struct sample_plan *plan) {
+    const struct path_device *device = renderer->job->device;
+    const struct device_work *work = worker->for_device;
+    const struct path_orders orders = {work->orders, work->count, work->pixels};
+    const struct path_pixel *pixel = work->pixels;
+    struct path_counts counts = {0};
+    bool goes_on = device->make(device->context, &orders, &counts);
+    count_of_device(worker, &counts);
+    for (uint32_t i = 0; i < work->count && goes_on; i++) {
+        const struct film_rectangle *part = &work->parts[i];
+        const struct sample_range range = {work->orders[i].begin, work->orders[i].end};
+        for (uint32_t y = part->y0; y < part->y1; y++)
+            for (uint32_t x = part->x0; x < part->x1 && goes_on; x++, pixel++) {
+                const struct film_rectangle one = {x, y, x + 1, y + 1};
+                const struct sample_plan single = {plan->film, &one, plan->before, plan->expected};
+                if (pixel->samples == range.end)
+                    finish_pixel(plan->film, worker, x, y, pixel);
+                else
+                    goes_on = sample_row(tracer, renderer, worker, &single, y, range);
+            }
+    }
+    return goes_on;
 }
 
 static bool sample_part(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
                         const struct sample_plan *plan, struct sample_range range) {
     const struct film_rectangle *part = plan->part;
-    if (worker->pixels)
-        return sample_by_device(tracer, renderer, worker, plan, range);
+    if (worker->for_device) {
+        worker->for_device->count = 0;
+        return order_part(tracer, worker, plan->film, part, range) && make_orders(tracer, renderer, worker, plan);
+    }
     for (int64_t y = part->y0; y < part->y1; y++) {
         if (!sample_row(tracer, renderer, worker, plan, y, range))
             return false;
@@ -524,6 +552,23 @@ bool path_tracer_render(const struct path_tracer *tracer, struct renderer *rende
     atomic_store_explicit(&renderer->unsatisfied, true, memory_order_relaxed);
     const struct sample_plan plan = {renderer->job->film, part, 0, tracer->samples};
     return sample_part(tracer, renderer, worker, &plan, (struct sample_range){pass->begin, pass->end});
+}
+
+bool path_tracer_render_by_device(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker) {
+    const struct sample_range range = {renderer->pass.begin, renderer->pass.end};
+    const struct sample_plan plan = {renderer->job->film, NULL, 0, tracer->samples};
+    struct device_work *work = worker->for_device;
+    const uint32_t count = work->count;
+    work->count = 0;
+    atomic_store_explicit(&renderer->unsatisfied, true, memory_order_relaxed);
+    for (uint32_t i = 0; i < count; i++) {
+        const struct film_rectangle part = work->parts[i];
+        if ((tracer->contours && range.begin == 0 &&
+             !contour_find(&tracer->contours[worker->index], renderer, worker, &part)) ||
+            !order_part(tracer, worker, plan.film, &part, range))
+            return false;
+    }
+    return make_orders(tracer, renderer, worker, &plan);
 }
 
 void path_tracer_repeat(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker, int64_t x,

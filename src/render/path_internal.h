@@ -73,6 +73,7 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
 void path_tracer_destroy(struct path_tracer *tracer);
 bool path_tracer_render(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
                         const struct film_rectangle *part);
+bool path_tracer_render_by_device(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker);
 void path_tracer_repeat(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker, int64_t x,
                         int64_t y);
 void path_tracer_warn(const struct render_job *job, world_warning *warn, void *context);

@@ -60,6 +60,20 @@ struct path_lane *path_lane_init(void *memory, const struct path_scene *scene, u
     return lane;
 }
 
+uint64_t path_orders_pixels(const struct path_orders *orders) {
+    uint64_t count = 0;
+    for (uint32_t i = 0; i < orders->count; i++)
+        count += path_order_pixels(&orders->all[i]);
+    return count;
+}
+
+uint64_t path_orders_paths(const struct path_orders *orders) {
+    uint64_t count = 0;
+    for (uint32_t i = 0; i < orders->count; i++)
+        count += path_order_paths(&orders->all[i]);
+    return count;
+}
+
 void path_counts_add(struct path_counts *to, const struct path_counts *counts) {
     to->camera_rays += counts->camera_rays;
     to->reflected_rays += counts->reflected_rays;

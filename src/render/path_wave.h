@@ -22,6 +22,16 @@ static inline uint64_t path_order_paths(const struct path_order *order) {
     return path_order_pixels(order) * (order->end - order->begin);
 }
 
+/* Orders that are made together: together they fill a card. pixels: of one order after the other, each row by row. */
+enum { PATH_ORDERS = 128 /* at most */ };
+struct path_orders {
+    const struct path_order *all;
+    uint32_t count;
+    struct path_pixel *pixels;
+};
+uint64_t path_orders_pixels(const struct path_orders *orders);
+uint64_t path_orders_paths(const struct path_orders *orders);
+
 /* What a worker counts. */
 struct path_counts {
     uint64_t camera_rays, reflected_rays, refracted_rays, shadow_rays, hits, medium_events;
@@ -71,12 +81,15 @@ struct path_device {
     void (*leave)(void *context, const char *what);
     /* Or NULL; before `begin`, with the estimate of a trial. False: threads make the picture. */
     bool (*is_worth)(void *context, const struct path_estimate *threads);
-    /* Before the first order. Errors end the render. */
-    bool (*begin)(void *context, struct bundle *scene, struct error *error);
-    /* pixels: row by row; where one has not all samples of the order afterwards, the thread makes them. Adds to
-     * `counts`. Called from any worker. False: stopped. */
-    bool (*make)(void *context, const struct path_order *order, struct path_pixel *pixels, struct path_counts *counts);
+    /* Before the first order. *is_used false: threads make the picture. Errors end the render. */
+    bool (*begin)(void *context, struct bundle *scene, bool *is_used, struct error *error);
+    /* Where a pixel has not all samples of its order afterwards, the thread makes them. Adds to `counts`. Called from
+     * any worker. False: stopped. */
+    bool (*make)(void *context, const struct path_orders *orders, struct path_counts *counts);
     void *context;
+    /* Threads that wait for orders, beside those of the processor, which make tiles, too. 0: the threads of the
+     * processor wait, and make nothing. */
+    uint32_t waiting;
 };
 
 #endif

@@ -120,35 +120,140 @@ static bool claim(struct renderer *renderer, const struct work_item *item, uint8
     return item->quarter == WORK_WHOLE ? film_tile_is_begun(wanted) : wanted == FILM_TILE_TAKEN;
 }
 
+/* The item is made, or not whole; before: the state of its tile. */
+static enum work_result end_item(struct renderer *renderer, const struct work_item *item, bool whole, uint8_t before) {
+    if (!renderer->pass.open)
+        return whole ? WORK_DONE : WORK_FAILED;
+    uint8_t after = (uint8_t)(FILM_TILE_PASSED + renderer->pass.number % FILM_PASSES);
+    atomic_store_explicit(&renderer->job->film->tiles[item->tile], whole ? after : before, memory_order_release);
+    return WORK_SKIPPED; /* the tile ends after the last pass */
+}
+
+static double area(struct film_rectangle r) {
+    return (double)(r.x1 - r.x0) * (r.y1 - r.y0);
+}
+
 static enum work_result make_item(struct renderer *renderer, struct worker *worker, const struct work_item *item) {
     struct film *film = renderer->job->film;
     struct film_rectangle tile = film_tile_rectangle(film, item->tile), r = work_item_part(tile, item);
-    double pixels = (double)(r.x1 - r.x0) * (r.y1 - r.y0), all = (double)(tile.x1 - tile.x0) * (tile.y1 - tile.y0);
     uint8_t before;
     if (!claim(renderer, item, &before))
         return WORK_SKIPPED;
     worker->tile_state = item->quarter == WORK_WHOLE && !renderer->pass.open ? &film->tiles[item->tile] : NULL;
-    bool whole = !(pixels > 0) || make_part(renderer, worker, item->tile, r, pixels / all);
-    if (!renderer->pass.open)
-        return whole ? WORK_DONE : WORK_FAILED;
-    uint8_t after = (uint8_t)(FILM_TILE_PASSED + renderer->pass.number % FILM_PASSES);
-    atomic_store_explicit(&film->tiles[item->tile], whole ? after : before, memory_order_release);
-    return WORK_SKIPPED; /* the tile ends after the last pass */
+    const double begun = clock_now();
+    bool whole = !(area(r) > 0) || make_part(renderer, worker, item->tile, r, area(r) / area(tile));
+    if (whole && area(r) > 0)
+        atomic_store_explicit(&renderer->pace.seconds, (clock_now() - begun) * area(tile) / area(r),
+                              memory_order_relaxed);
+    return end_item(renderer, item, whole, before);
+}
+
+static void give_back(struct renderer *renderer, const struct work_item *item, enum work_result result) {
+    result = work_queue_give_back(&renderer->queue, item, result);
+    if (result != WORK_SKIPPED)
+        end_tile(renderer, item->tile, result == WORK_DONE);
+}
+
+/* --- a device, and threads beside it --- */
+
+/* The number of workers that wait for the device. */
+static uint32_t waiting_workers(const struct renderer *renderer) {
+    uint32_t count = 0;
+    for (int i = 0; i < renderer->worker_count; i++)
+        count += renderer->workers[i].for_device != NULL;
+    return count;
+}
+
+/* So many tiles at once that a card is full, and that at the end all workers have some. */
+static uint32_t tiles_at_once(struct renderer *renderer) {
+    static const double paths = 1 << 22;
+    const double samples = renderer->pass.end - renderer->pass.begin;
+    const double share = work_queue_left(&renderer->queue) / waiting_workers(renderer);
+    const double count = math_min(math_min(share, paths / (samples * FILM_TILE * FILM_TILE)), PATH_ORDERS);
+    return (uint32_t)math_max(count, 1);
+}
+
+/* Takes items; those that are not to be made, or are empty, are given back at once. */
+static enum work_answer take_for_device(struct renderer *renderer, struct device_work *work) {
+    const uint32_t limit = tiles_at_once(renderer);
+    enum work_answer answer = WORK_HERE;
+    work->count = 0;
+    while (answer == WORK_HERE && work->count < limit) {
+        struct work_item *item = &work->taken[work->count].item;
+        uint8_t *before = &work->taken[work->count].before;
+        answer = work_queue_take(&renderer->queue, work->count == 0 ? work_patience : 0, item);
+        if (answer != WORK_HERE)
+            continue;
+        work->parts[work->count] = work_item_part(film_tile_rectangle(renderer->job->film, item->tile), item);
+        if (!claim(renderer, item, before))
+            give_back(renderer, item, WORK_SKIPPED);
+        else if (!(area(work->parts[work->count]) > 0))
+            give_back(renderer, item, end_item(renderer, item, true, *before));
+        else
+            work->count++;
+    }
+    return answer;
+}
+
+static enum work_answer work_for_device(struct renderer *renderer, struct worker *worker) {
+    struct device_work *work = worker->for_device;
+    const enum work_answer answer = take_for_device(renderer, work);
+    const uint32_t count = work->count;
+    const double begun = clock_now();
+    if (count == 0)
+        return answer;
+    atomic_fetch_add(&renderer->pace.taken, count);
+    const bool whole = integrator_render_by_device(renderer, worker) && !renderer_stopped(renderer, worker);
+    if (worker->scratch.failed) {
+        atomic_store(&renderer->failed, true);
+        pool_cancel(renderer->pool);
+    }
+    worker->tile_ended = clock_now();
+    atomic_fetch_add(&renderer->pace.made, count);
+    for (uint32_t i = 0; i < count; i++) {
+        const struct work_item *item = &work->taken[i].item;
+        const struct film_rectangle tile = film_tile_rectangle(renderer->job->film, item->tile);
+        if (whole)
+            renderer_tile_was_made(renderer, item->tile, area(work_item_part(tile, item)) / area(tile),
+                                   (worker->tile_ended - begun) / count);
+        give_back(renderer, item, end_item(renderer, item, whole, work->taken[i].before));
+    }
+    return WORK_HERE;
+}
+
+static void begin_pace(struct renderer *renderer, double now) {
+    struct device_pace *pace = &renderer->pace;
+    atomic_store(&pace->begun, now);
+    atomic_store(&pace->taken, 0);
+    atomic_store(&pace->made, 0);
+    atomic_store(&pace->seconds, 0);
+}
+
+/* Whether the device will have made all that is left before a thread would have made one more tile. */
+static bool is_left_to_device(struct renderer *renderer) {
+    const struct device_pace *pace = &renderer->pace;
+    const uint32_t made = atomic_load(&pace->made), taken = atomic_load(&pace->taken);
+    const double left = work_queue_left(&renderer->queue), passed = clock_now() - atomic_load(&pace->begun);
+    return made > 0 && left > 0 && atomic_load(&pace->seconds) > (left + taken - made) * passed / made;
 }
 
 /* A pool_function: a worker, until the work is over. */
 static void work(void *context, uint32_t item, int index) {
     struct renderer *renderer = context;
     struct worker *worker = &renderer->workers[index];
+    const bool takes_many = worker->for_device && !(renderer->job->settings.noise > 0);
     (void)item;
     for (enum work_answer answer = WORK_LATER; answer != WORK_OVER && !renderer_stopped(renderer, worker);) {
         struct work_item taken;
-        answer = work_queue_take(&renderer->queue, work_patience, &taken);
-        if (answer == WORK_HERE) {
-            enum work_result result = make_item(renderer, worker, &taken);
-            result = work_queue_give_back(&renderer->queue, &taken, result);
-            if (result != WORK_SKIPPED)
-                end_tile(renderer, taken.tile, result == WORK_DONE);
+        const uint32_t seen = atomic_load(&renderer->queue.event->signals);
+        if (takes_many) {
+            answer = work_for_device(renderer, worker);
+        } else if (!worker->for_device && is_left_to_device(renderer)) {
+            pool_wait(renderer->queue.event, seen, work_patience);
+        } else {
+            answer = work_queue_take(&renderer->queue, work_patience, &taken);
+            if (answer == WORK_HERE)
+                give_back(renderer, &taken, make_item(renderer, worker, &taken));
         }
         pool_poll(renderer->pool, index);
     }
@@ -178,7 +283,13 @@ static bool do_work(struct renderer *renderer, struct render_statistics *statist
     for (int i = 0; i < workers; i++)
         renderer->workers[i].tile_ended = begun;
     work_queue_begin(queue);
+    begin_pace(renderer, begun);
+    const int waiting = renderer->worker_count - workers;
+    struct pool_threads *threads = waiting > 0 && renderer->workers[workers].for_device
+                                       ? pool_threads_start((uint32_t)waiting, workers, work, renderer)
+                                       : NULL;
     bool whole = pool_run(renderer->pool, (uint32_t)workers, work, renderer);
+    pool_threads_join(threads);
     work_queue_destroy(queue);
     double ended = clock_now();
     for (uint32_t i = 0; i < queue->tail && !whole; i++) { /* those of which quarters are missing */
@@ -252,6 +363,7 @@ static void add_statistics(const struct renderer *renderer, int workers, struct 
 }
 
 static bool start_workers(struct renderer *renderer, int workers) {
+    renderer->worker_count = workers;
     renderer->workers = mem_alloc_zero((size_t)workers, sizeof *renderer->workers);
     if (!renderer->workers)
         return false;
@@ -330,8 +442,13 @@ static bool begin_rendering(struct renderer *renderer, int workers, struct rende
 }
 
 static void end_rendering(struct renderer *renderer, int workers) {
-    for (int i = 0; renderer->workers && i < workers; i++)
-        world_scratch_destroy(&renderer->workers[i].scratch);
+    for (int i = 0; renderer->workers && i < workers; i++) {
+        struct worker *worker = &renderer->workers[i];
+        if (worker->for_device)
+            mem_free(worker->for_device->pixels);
+        mem_free(worker->for_device);
+        world_scratch_destroy(&worker->scratch);
+    }
     integrator_destroy(renderer->integrator);
     mem_free(renderer->workers);
     mem_free(renderer->closed);
@@ -482,6 +599,7 @@ static enum work_answer next_pass(void *context, struct work_queue *queue) {
     pass->begin = pass->end;
     pass->end += samples;
     atomic_store(&renderer->unsatisfied, false);
+    begin_pace(renderer, now);
     work_queue_set(queue, queue->tiles, queue->whole, 0);
     return WORK_HERE;
 }
@@ -532,7 +650,8 @@ bool render_run(const struct render_job *job, struct pool *pool, struct render_s
                 struct error *error) {
     double begin = clock_now();
     struct renderer renderer = {.job = job, .pool = pool, .begun = begin};
-    int workers = pool_workers(pool);
+    const bool has_device = job->device && job->settings.integrator == INTEGRATOR_PATH;
+    int workers = pool_workers(pool) + (has_device ? (int)job->device->waiting : 0);
     bool ok = begin_rendering(&renderer, workers, statistics, error) && choose_tiles(&renderer, error) &&
               make_tiles(&renderer, statistics, error);
     if (renderer.integrator)

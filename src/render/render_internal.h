@@ -5,6 +5,7 @@
 
 #include "render/camera.h"
 #include "render/integrator_state_internal.h"
+#include "render/path_wave.h"
 #include "render/render.h"
 #include "render/time_estimate.h"
 #include "render/work_queue_internal.h"
@@ -52,7 +53,27 @@ struct worker {
     _Atomic uint8_t *tile_state; /* of the tile that this worker alone makes, all samples in one go; else NULL */
     double part;                 /* of the work of the tile, that is done after its last samples */
     struct worker_cost cost;
-    struct path_pixel *pixels; /* of a tile, for the device of the job; NULL: the worker traces its own paths */
+    struct device_work *for_device; /* NULL: the worker traces its own paths */
+};
+
+/* What a worker takes for the device of the job. */
+struct device_work {
+    struct {
+        struct work_item item;
+        uint8_t before; /* state of the tile */
+    } taken[PATH_ORDERS];
+    struct film_rectangle parts[PATH_ORDERS];
+    struct path_order orders[PATH_ORDERS]; /* of the parts, in their order */
+    uint32_t count;
+    struct path_pixel *pixels; /* of all orders; owned, grows */
+    size_t room;               /* for pixels */
+};
+
+/* How quickly the device of the job makes tiles, and the threads of the processor beside it. */
+struct device_pace {
+    _Atomic double begun;         /* seconds: when the first could be taken */
+    _Atomic uint32_t taken, made; /* by the device */
+    _Atomic double seconds;       /* that a thread needed for the last tile; 0: none is made yet */
 };
 
 /* Samples that a pass adds to each pixel: from number `begin` on to that before `end`. */
@@ -79,6 +100,8 @@ struct renderer {
     uint32_t closed_count;
     struct integrator *integrator;
     struct worker *workers;
+    int worker_count; /* those of the pool, then those that wait for the device of the job */
+    struct device_pace pace;
     uint32_t tiles_wanted; /* of this process, those that were there before too */
     uint64_t *cost;        /* of each tile while shards are chosen */
     uint32_t *order;       /* tiles of the queue */

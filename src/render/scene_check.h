@@ -14,8 +14,8 @@
     X(FAULT_SIZE)                                                                                                      \
     X(FAULT_LIGHT)                                                                                                     \
     X(FAULT_EYE)                                                                                                       \
-    X(FAULT_LIGHT_INSIDE) X(FAULT_SOLID) X(FAULT_CAUSTICS) X(FAULT_FIELD) X(FAULT_THIN_WALL) X(FAULT_SUBSURFACE)       \
-        X(FAULT_DISPERSION)
+    X(FAULT_LIGHT_INSIDE)                                                                                              \
+    X(FAULT_SOLID) X(FAULT_CAUSTICS) X(FAULT_FIELD) X(FAULT_THIN_WALL) X(FAULT_SUBSURFACE) X(FAULT_DISPERSION)
 enum scene_fault { SCENE_FAULTS(LIST_MEMBER) };
 
 /* Calls `notice` with a sentence for each mistake; the world is built. *noticed: a bit of each kind whose sentence was

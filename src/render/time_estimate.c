@@ -129,3 +129,12 @@ void renderer_tile_ends(struct renderer *renderer, struct worker *worker) {
     if (renderer->time_estimate.tiles)
         add_cost(renderer, worker, clock_now());
 }
+
+void renderer_tile_was_made(struct renderer *renderer, uint32_t tile, double share, double seconds) {
+    struct tile_cost *cost = renderer->time_estimate.tiles ? &renderer->time_estimate.tiles[tile] : NULL;
+    if (!cost)
+        return;
+    atomic_fetch_add_explicit(&cost->cost, (uint64_t)(seconds * 1e9), memory_order_relaxed);
+    atomic_fetch_add_explicit(&cost->part, (uint32_t)(share * TILE_COST_WHOLE), memory_order_relaxed);
+    report(renderer, clock_now());
+}

@@ -64,5 +64,7 @@ bool renderer_begin_estimate(struct renderer *renderer);
 void renderer_tile_begins(struct renderer *renderer, struct worker *worker, uint32_t tile, double share);
 void renderer_tile_goes_on(struct renderer *renderer, struct worker *worker, double part);
 void renderer_tile_ends(struct renderer *renderer, struct worker *worker);
+/* In place of the three: a device has made this share of the tile, in so many seconds. */
+void renderer_tile_was_made(struct renderer *renderer, uint32_t tile, double share, double seconds);
 
 #endif

@@ -78,6 +78,14 @@ enum work_answer work_queue_take(struct work_queue *queue, double patience, stru
     return try_to_take(queue, item, &seen);
 }
 
+double work_queue_left(struct work_queue *queue) {
+    (void)pthread_mutex_lock(&queue->mutex);
+    const uint32_t whole = queue->next < queue->whole ? queue->whole - queue->next : 0;
+    const uint32_t quarters = queue->whole + WORK_QUARTERS * queue->tail - queue->next - whole;
+    (void)pthread_mutex_unlock(&queue->mutex);
+    return whole + (double)quarters / WORK_QUARTERS;
+}
+
 /* The lock is held. */
 static enum work_result add_quarter(struct work_queue *queue, const struct work_item *item, enum work_result result) {
     if (result == WORK_SKIPPED)

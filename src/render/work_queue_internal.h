@@ -45,6 +45,8 @@ void work_queue_destroy(struct work_queue *queue);
 void work_queue_set(struct work_queue *queue, const uint32_t *tiles, uint32_t whole, uint32_t tail);
 /* Waits at most `patience` seconds (below 1) for an item: WORK_LATER then. */
 enum work_answer work_queue_take(struct work_queue *queue, double patience, struct work_item *item);
+/* How much is left that no worker has, in tiles; of this moment. */
+double work_queue_left(struct work_queue *queue);
 /* The worker gives the item back. Returns the result of its tile: of a quarter WORK_SKIPPED, until the last one comes
  * back. */
 enum work_result work_queue_give_back(struct work_queue *queue, const struct work_item *item, enum work_result result);

@@ -35,7 +35,8 @@ static struct {
     int capability;  /* the first number */
     int until_error; /* calls; below 0: none */
     _Atomic int calls;
-    bool is_wrong; /* in a bit of what it adds */
+    bool is_wrong;    /* in a bit of what it adds */
+    uint32_t waiting; /* threads for it, beside those of the processor; 0: these wait for it */
     struct file_bytes kernels;
 } card = {.mutex = PTHREAD_MUTEX_INITIALIZER};
 
@@ -50,10 +51,11 @@ static void reset_card(void) {
         (void)munmap(card.blocks[i].memory, card.blocks[i].size);
     card.block_count = 0;
     card.calls = 0;
-    card.idle = 40 << 20;
+    card.idle = 400 << 20;
     card.capability = 9;
     card.until_error = -1;
     card.is_wrong = false;
+    card.waiting = 0;
     card.kernels = (struct file_bytes){(const uint8_t *)played_kernels, sizeof played_kernels - 1};
 }
 
@@ -264,14 +266,14 @@ struct service {
     struct cuda *cuda;
     struct error error;
 };
-static bool begin_service(void *context, struct bundle *scene, struct error *error) {
+static bool begin_service(void *context, struct bundle *scene, bool *is_used, struct error *error) {
     struct service *service = context;
     const struct path_device here = emulation_device(service->emulation);
     const size_t size = bundle_size(scene);
     void *bytes = mem_alloc_aligned(64, size);
-    CHECK(bytes && here.begin(here.context, scene, error));
+    CHECK(bytes && here.begin(here.context, scene, is_used, error));
     bundle_write(scene, bytes);
-    service->cuda = cuda_create(&played, &card.kernels, 2, true, &service->error);
+    service->cuda = cuda_create(&played, &card.kernels, true, &service->error);
     if (service->cuda &&
         !cuda_open_scene(service->cuda, bytes, size, emulation_scene(service->emulation), &here, &service->error)) {
         cuda_destroy(service->cuda);
@@ -280,19 +282,19 @@ static bool begin_service(void *context, struct bundle *scene, struct error *err
     mem_free(bytes);
     return true;
 }
-static bool make_by_card(void *context, const struct path_order *order, struct path_pixel *pixels,
-                         struct path_counts *counts) {
+static bool make_by_card(void *context, const struct path_orders *orders, struct path_counts *counts) {
     struct service *service = context;
     if (!service->cuda)
         return true;
     const struct path_device device = cuda_device(service->cuda);
-    return device.make(device.context, order, pixels, counts);
+    return device.make(device.context, orders, counts);
 }
 
 /* Renders with the card, and compares with the threads; reason: why the card was not used, or was lost. */
 static void check_picture(struct stage *s, const float *floats, size_t size, char *reason, size_t room) {
     struct service service = {s->pool, emulation_create(s->pool, 0, 0), NULL, {0}};
-    const struct path_device device = {.begin = begin_service, .make = make_by_card, .context = &service};
+    const struct path_device device = {
+        .begin = begin_service, .make = make_by_card, .context = &service, .waiting = card.waiting};
     struct render_job job = stage_job(s, WIDTH, HEIGHT);
     job.device = &device;
     for (uint32_t i = 0; i < film_tile_count(job.film); i++)
@@ -322,6 +324,10 @@ TEST(a_card_gives_the_bytes_of_threads) {
     char reason[256];
     begin_scene(&s);
     float *floats = film_of_threads(&s, &size);
+    check_picture(&s, floats, size, reason, sizeof reason);
+    CHECK(reason[0] == '\0');
+    reset_card();
+    card.waiting = 3;
     check_picture(&s, floats, size, reason, sizeof reason);
     CHECK(reason[0] == '\0');
     mem_free(floats);

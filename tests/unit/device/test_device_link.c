@@ -35,7 +35,8 @@ static void *run_server(void *context) {
 }
 
 /* Keeps the bundle, and renders nothing. */
-static bool keep_scene(void *context, struct bundle *scene, struct error *error) {
+static bool keep_scene(void *context, struct bundle *scene, bool *is_used, struct error *error) {
+    *is_used = false;
     struct server *server = context;
     server->size = bundle_size(scene);
     server->scene = mem_alloc_aligned(64, server->size);
@@ -92,16 +93,22 @@ TEST(a_device_process_survives_every_order_and_goes_on) {
     for (int i = 0; i < 500; i++) {
         struct slot *slot = take_slot(&client);
         CHECK(slot != NULL);
-        memset(slot->pixels, i % 3 ? 0 : 0xa5, sizeof slot->pixels);
-        slot->order = odd_order(&random);
-        const bool fits = order_fits(&slot->order);
-        for (int k = 0; fits && k < FILM_TILE * FILM_TILE; k++)
-            slot->pixels[k] = (struct path_pixel){.samples = i % 2 ? slot->order.begin : 77};
+        slot->count = bits(&random, 8) ? 1 + bits(&random, 3) : bits(&random, 2) ? UINT32_MAX - bits(&random, 9) : 0;
+        bool fits = slot->count > 0 && slot->count < 4;
+        struct path_pixel *pixel = slot->pixels;
+        memset(slot->pixels, i % 3 ? 0 : 0xa5, sizeof(struct path_pixel) * 3 * FILM_TILE * FILM_TILE);
+        for (uint32_t k = 0; k < 3; k++) {
+            slot->orders[k] = odd_order(&random);
+            fits = fits && (k >= slot->count || order_fits(&slot->orders[k]));
+        }
+        for (uint32_t k = 0; fits && k < slot->count; k++)
+            for (uint64_t n = path_order_pixels(&slot->orders[k]); n > 0; n--)
+                *pixel++ = (struct path_pixel){.samples = i % 2 ? slot->orders[k].begin : 77};
         atomic_store(&slot->state, SLOT_ASKED);
         pool_signal(&server.link->asked);
         while (atomic_load(&slot->state) != SLOT_MADE)
             pool_wait(&server.link->answered, atomic_load(&server.link->answered.signals), patience);
-        made += fits && slot->pixels[0].samples == slot->order.end;
+        made += fits && slot->pixels[0].samples == slot->orders[0].end;
         atomic_store(&slot->state, SLOT_FREE);
     }
     CHECK(made > 10);
@@ -109,7 +116,9 @@ TEST(a_device_process_survives_every_order_and_goes_on) {
     struct path_pixel pixels[WIDTH * HEIGHT] = {{.samples = 0}};
     struct path_counts counts = {0};
     struct device_client user = client;
-    CHECK(device_client_make(&user, &(struct path_order){0, 0, WIDTH, HEIGHT, 0, 4}, pixels, &counts));
+    /* In two orders: rows above and below. */
+    const struct path_order all[] = {{0, 0, WIDTH, 5, 0, 4}, {0, 5, WIDTH, HEIGHT, 0, 4}};
+    CHECK(device_client_make(&user, &(struct path_orders){all, 2, pixels}, &counts));
     for (size_t i = 0; i < WIDTH * HEIGHT; i++) {
         struct colour mean = path_pixel_mean(&pixels[i]), seen = stage_pixel(&s, i % WIDTH, (uint32_t)(i / WIDTH));
         CHECK((float)mean.r == (float)seen.r && (float)mean.b == (float)seen.b);
@@ -127,7 +136,8 @@ TEST(a_render_process_does_not_wait_for_a_device_that_is_gone) {
     device_link_close(server.link);
     struct path_pixel pixels[WIDTH * HEIGHT] = {{.samples = 0}};
     struct path_counts counts = {0};
-    CHECK(device_client_make(&client, &(struct path_order){0, 0, WIDTH, HEIGHT, 0, 4}, pixels, &counts));
+    const struct path_order order = {0, 0, WIDTH, HEIGHT, 0, 4};
+    CHECK(device_client_make(&client, &(struct path_orders){&order, 1, pixels}, &counts));
     CHECK(pixels[0].samples == 0 && counts.camera_rays == 0);
     end_server(&s, &server);
 }

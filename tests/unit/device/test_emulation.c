@@ -58,18 +58,21 @@ struct loser {
     struct path_device inner;
     _Atomic uint32_t lost;
 };
-static bool begin_losing(void *context, struct bundle *scene, struct error *error) {
+static bool begin_losing(void *context, struct bundle *scene, bool *is_used, struct error *error) {
     const struct loser *loser = context;
-    return loser->inner.begin(loser->inner.context, scene, error);
+    return loser->inner.begin(loser->inner.context, scene, is_used, error);
 }
-static bool make_losing(void *context, const struct path_order *order, struct path_pixel *pixels,
-                        struct path_counts *counts) {
+static bool make_losing(void *context, const struct path_orders *orders, struct path_counts *counts) {
     struct loser *loser = context;
-    const uint64_t count = path_order_pixels(order);
-    if (!loser->inner.make(loser->inner.context, order, pixels, counts))
+    struct path_pixel *pixel = orders->pixels;
+    if (!loser->inner.make(loser->inner.context, orders, counts))
         return false;
-    for (uint64_t i = 0; i < count; i += 3, loser->lost++)
-        pixels[i] = (struct path_pixel){.samples = order->begin, .sums = {{7, 7, 7}}};
+    for (uint32_t k = 0; k < orders->count; k++)
+        for (uint64_t i = 0; i < path_order_pixels(&orders->all[k]); i++, pixel++)
+            if (i % 3 == 0) {
+                *pixel = (struct path_pixel){.samples = orders->all[k].begin, .sums = {{7, 7, 7}}};
+                loser->lost++;
+            }
     return true;
 }
 
@@ -91,6 +94,7 @@ static void check_scene(struct stage *s) {
     for (int i = 0; i < 4; i++) {
         struct emulation *emulation = emulation_create(s->pool, waves[i], 0);
         struct loser loser = {emulation_device(emulation), 0};
+        loser.inner.waiting = i == 1 ? 3 : 0; /* threads make tiles beside them */
         const struct path_device losing = {.begin = begin_losing, .make = make_losing, .context = &loser};
         render_with(s, i < 3 ? &loser.inner : &losing, &device);
         CHECK(same(&threads, &device));
@@ -131,16 +135,17 @@ struct counter {
     struct path_device inner;
     _Atomic uint32_t whole, left;
 };
-static bool begin_counting(void *context, struct bundle *scene, struct error *error) {
+static bool begin_counting(void *context, struct bundle *scene, bool *is_used, struct error *error) {
     const struct counter *counter = context;
-    return counter->inner.begin(counter->inner.context, scene, error);
+    return counter->inner.begin(counter->inner.context, scene, is_used, error);
 }
-static bool make_counting(void *context, const struct path_order *order, struct path_pixel *pixels,
-                          struct path_counts *counts) {
+static bool make_counting(void *context, const struct path_orders *orders, struct path_counts *counts) {
     struct counter *counter = context;
-    bool goes_on = counter->inner.make(counter->inner.context, order, pixels, counts);
-    for (uint64_t i = 0; i < path_order_pixels(order); i++)
-        *(pixels[i].samples == order->end ? &counter->whole : &counter->left) += 1;
+    const struct path_pixel *pixel = orders->pixels;
+    bool goes_on = counter->inner.make(counter->inner.context, orders, counts);
+    for (uint32_t k = 0; k < orders->count; k++)
+        for (uint64_t i = 0; i < path_order_pixels(&orders->all[k]); i++, pixel++)
+            *(pixel->samples == orders->all[k].end ? &counter->whole : &counter->left) += 1;
     return goes_on;
 }
 
@@ -195,7 +200,8 @@ static void read_maps(struct words *words) {
         (void)fclose(maps);
 }
 
-static bool find_addresses(void *context, struct bundle *scene, struct error *error) {
+static bool find_addresses(void *context, struct bundle *scene, bool *is_used, struct error *error) {
+    *is_used = false;
     struct words *words = context;
     const size_t size = bundle_size(scene);
     uint64_t *bytes = mem_alloc_aligned(64, size);
