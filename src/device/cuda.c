@@ -36,7 +36,7 @@ enum kernel { KERNELS(KERNEL_MEMBER) KERNEL_COUNT };
 struct card_stream {
     _Atomic bool taken;
     void *handle;
-    uint64_t wave, orders, states, living[2], sorted, pixels, lanes; /* addresses on the card; 0: none yet */
+    uint64_t wave, orders, states[2], results, living[2], pixels, lanes; /* addresses on the card; 0: none yet */
 };
 
 struct cuda {
@@ -141,9 +141,9 @@ const char *cuda_lost(struct cuda *cuda) {
 
 /* --- the scene --- */
 
-/* Of a path in flight: its state, and a place in three lists. */
+/* Of a path in flight. */
 static uint64_t path_bytes(const struct cuda *cuda) {
-    return path_wave_state_size(cuda->scene) + 3 * sizeof(uint32_t);
+    return 2 * path_wave_state_size() + path_wave_result_size(cuda->scene) + 2 * sizeof(uint32_t);
 }
 
 /* The most paths and lanes for which all streams fit into the memory of the card. */
@@ -252,12 +252,13 @@ static struct card_stream *take_stream(struct cuda *cuda) {
 static bool fill_stream(struct cuda *cuda, struct card_stream *stream, struct error *error) {
     if (stream->lanes)
         return true;
-    const size_t states = (size_t)cuda->room * path_wave_state_size(cuda->scene), list = cuda->room * sizeof(uint32_t);
+    const size_t states = (size_t)cuda->room * path_wave_state_size(), list = cuda->room * sizeof(uint32_t);
+    const size_t results = (size_t)cuda->room * path_wave_result_size(cuda->scene);
     return CALL(cuda, error, stream_create, &stream->handle, 1 /* no order with stream 0 */) &&
            CALL(cuda, error, take, &stream->wave, sizeof(struct wave)) &&
-           CALL(cuda, error, take, &stream->states, states) && CALL(cuda, error, take, &stream->living[0], list) &&
-           CALL(cuda, error, take, &stream->living[1], list) && CALL(cuda, error, take, &stream->sorted, list) &&
-           CALL(cuda, error, take, &stream->pixels, PIXEL_BYTES) &&
+           CALL(cuda, error, take, &stream->states[0], states) && CALL(cuda, error, take, &stream->states[1], states) &&
+           CALL(cuda, error, take, &stream->results, results) && CALL(cuda, error, take, &stream->living[0], list) &&
+           CALL(cuda, error, take, &stream->living[1], list) && CALL(cuda, error, take, &stream->pixels, PIXEL_BYTES) &&
            CALL(cuda, error, take, &stream->orders, ORDER_BYTES) &&
            CALL(cuda, error, take, &stream->lanes, cuda->lanes * path_lane_size(cuda->crossings));
 }
@@ -318,9 +319,10 @@ static bool run_orders(struct cuda *cuda, struct card_stream *stream, const stru
                         .orders = (const struct wave_order *)(uintptr_t)stream->orders,
                         .order_count = orders->count,
                         .pixels = (struct path_pixel *)(uintptr_t)stream->pixels,
-                        .states = (char *)(uintptr_t)stream->states,
-                        .sorted = (uint32_t *)(uintptr_t)stream->sorted,
-                        .state_size = path_wave_state_size(cuda->scene),
+                        .states = {(char *)(uintptr_t)stream->states[0], (char *)(uintptr_t)stream->states[1]},
+                        .results = (char *)(uintptr_t)stream->results,
+                        .state_size = path_wave_state_size(),
+                        .result_size = path_wave_result_size(cuda->scene),
                         .living = {(uint32_t *)(uintptr_t)stream->living[0], (uint32_t *)(uintptr_t)stream->living[1]}};
     bool ok = CALL(cuda, error, upload, stream->pixels, orders->pixels, size, stream->handle) &&
               CALL(cuda, error, upload, stream->orders, numbered, orders->count * sizeof *numbered, stream->handle) &&

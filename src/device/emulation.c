@@ -66,12 +66,12 @@ static bool run_wave(const struct emulation *emulation, struct wave *wave, struc
             wave_sort(wave, turn, k);
         wave_clear_next(wave, turn);
         for (uint32_t k = 0; k < count; k++)
-            wave_shade(wave, lane, k);
+            wave_shade(wave, lane, turn, k);
         for (uint32_t k = 0; k < count; k++)
             wave_shadow(wave, lane, turn, k);
     }
     for (uint32_t i = 0; i < wave_pixels(wave); i++)
-        wave_add(wave, lane, i);
+        wave_add(wave, i);
     return true;
 }
 
@@ -104,15 +104,17 @@ static bool make(void *context, const struct path_orders *orders, struct path_co
                         .orders = numbered,
                         .order_count = orders->count,
                         .pixels = orders->pixels,
-                        .state_size = path_wave_state_size(scene)};
+                        .state_size = path_wave_state_size(),
+                        .result_size = path_wave_result_size(scene)};
     const uint32_t room = paths < emulation->wave ? (uint32_t)paths : emulation->wave;
     wave_number_orders(orders, numbered);
-    wave.states = mem_alloc(room * wave.state_size);
+    wave.states[0] = mem_alloc(room * wave.state_size);
+    wave.states[1] = mem_alloc(room * wave.state_size);
+    wave.results = mem_alloc(room * wave.result_size);
     wave.living[0] = mem_alloc(room * sizeof *wave.living[0]);
     wave.living[1] = mem_alloc(room * sizeof *wave.living[1]);
-    wave.sorted = mem_alloc(room * sizeof *wave.sorted);
     void *memory = mem_alloc_aligned(16, path_lane_size(crossings));
-    bool goes_on = wave.states && wave.living[0] && wave.living[1] && wave.sorted && memory;
+    bool goes_on = wave.states[0] && wave.states[1] && wave.results && wave.living[0] && wave.living[1] && memory;
     struct path_lane *lane = goes_on ? path_lane_init(memory, scene, crossings) : NULL;
     for (; goes_on && wave.first < paths; wave.first += wave.count) {
         const uint64_t left = paths - wave.first;
@@ -128,10 +130,11 @@ static bool make(void *context, const struct path_orders *orders, struct path_co
         path_counts_add(counts, &made);
     }
     mem_free(memory);
-    mem_free(wave.sorted);
     mem_free(wave.living[1]);
     mem_free(wave.living[0]);
-    mem_free(wave.states);
+    mem_free(wave.results);
+    mem_free(wave.states[1]);
+    mem_free(wave.states[0]);
     return goes_on;
 }
 

@@ -73,7 +73,7 @@ void kernel_shade(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t tu
     if (thread_index() == 0)
         wave_clear_next(w, turn);
     for (uint32_t k = thread_index(); k < w->living_count[turn % 2]; k += thread_count())
-        wave_shade(w, lane, k);
+        wave_shade(w, lane, turn, k);
 }
 
 void kernel_shadow(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn) {
@@ -85,9 +85,9 @@ void kernel_shadow(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t t
 
 void kernel_add(uint64_t wave, uint64_t lanes, uint32_t crossings) {
     struct wave *w = (struct wave *)(uintptr_t)wave;
-    struct path_lane *lane = lane_of(lanes, crossings);
+    (void)lanes, (void)crossings;
     for (uint32_t i = thread_index(); i < wave_pixels(w); i += thread_count())
-        wave_add(w, lane, i);
+        wave_add(w, i);
 }
 
 /* count: of lanes. */

@@ -15,15 +15,24 @@
 
 struct path_wave_state {
     struct path path;
+    double seen_through;
+    uint32_t place;
+    bool below; /* the next piece is come_out, not extend and shade */
+    bool ended; /* but for the light that is on its way */
+    bool failed;
+};
+struct path_wave_light {
     struct path_shadow shadow;
+};
+struct path_wave_result {
+    struct colour light;
     double seen_through, weight; /* weight: of the filter */
-    bool below;                  /* the next piece is come_out, not extend and shade */
-    bool ended;                  /* but for the light that is on its way */
-    bool seen;                   /* there is a camera ray */
     bool failed;
     struct path_parts parts; /* with scene->has_parts */
 };
-_Static_assert(offsetof(struct path_wave_state, parts) <= 1088, "millions of paths fit into memory");
+_Static_assert(sizeof(struct path_wave_light) <= sizeof(struct path_wave_state), "they share places");
+_Static_assert(2 * sizeof(struct path_wave_state) + offsetof(struct path_wave_result, parts) <= 1160,
+               "millions of paths fit into memory");
 
 struct path_lane {
     struct world_scratch scratch;
@@ -32,8 +41,12 @@ struct path_lane {
     uint64_t camera_rays;
 };
 
-size_t path_wave_state_size(const struct path_scene *scene) {
-    return scene->has_parts ? sizeof(struct path_wave_state) : offsetof(struct path_wave_state, parts);
+size_t path_wave_state_size(void) {
+    return sizeof(struct path_wave_state);
+}
+
+size_t path_wave_result_size(const struct path_scene *scene) {
+    return scene->has_parts ? sizeof(struct path_wave_result) : offsetof(struct path_wave_result, parts);
 }
 
 uint32_t path_scene_crossings(const struct path_scene *scene) {
@@ -92,8 +105,10 @@ struct path_counts path_lane_counts(const struct path_lane *lane) {
 
 /* --- the pieces --- */
 
-static void enter(struct path_lane *lane, const struct path_scene *scene, struct path_wave_state *wave) {
-    lane->state.parts = scene->has_parts ? &wave->parts : NULL;
+/* result: or NULL, where a piece has no parts. */
+static void enter(struct path_lane *lane, const struct path_scene *scene, const struct path_wave_state *wave,
+                  struct path_wave_result *result) {
+    lane->state.parts = scene->has_parts && result ? &result->parts : NULL;
     lane->state.seen_through = wave->seen_through;
     lane->scratch.failed = lane->scratch.geom.overflow = false;
     lane->scratch.geom.used = 0;
@@ -104,26 +119,30 @@ static void leave(const struct path_lane *lane, struct path_wave_state *wave) {
     wave->failed = wave->failed || lane->scratch.failed;
 }
 
-bool path_wave_begin(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *wave,
-                     const struct path_order *order, uint64_t number) {
+bool path_wave_begin(const struct path_scene *scene, struct path_lane *lane, const struct path_wave_start *start,
+                     struct path_wave_state *wave, struct path_wave_result *result) {
     const struct renderer *renderer = &scene->renderer;
+    const struct path_order *order = start->order;
     const uint32_t each = order->end - order->begin;
-    const uint64_t pixel = number / each, width = order->x1 - order->x0;
+    const uint64_t pixel = start->number / each, width = order->x1 - order->x0;
     const struct pixel_sample at =
         path_sample_position(&scene->tracer, &scene->job, order->x0 + (int64_t)(pixel % width),
-                             order->y0 + (int64_t)(pixel / width), order->begin + (uint32_t)(number % each));
+                             order->y0 + (int64_t)(pixel / width), order->begin + (uint32_t)(start->number % each));
     struct integrator_state *state = &lane->state;
     struct ray ray;
     if (scene->has_parts)
-        wave->parts = (struct path_parts){0};
+        result->parts = (struct path_parts){0};
+    result->light = colour_all(0);
+    result->seen_through = 0;
+    result->weight = at.weight;
+    result->failed = false;
+    wave->place = start->place;
     wave->seen_through = 0;
-    wave->weight = at.weight;
     wave->failed = wave->below = wave->ended = false;
-    enter(lane, scene, wave);
+    enter(lane, scene, wave, result);
     state->sampler =
         sampler_make_sobol(scene->job.settings.seed, (uint64_t)at.y * scene->job.width + (uint64_t)at.x, at.number);
-    wave->seen = renderer_camera_ray(renderer, &renderer->camera, &at, &state->sampler, &ray);
-    if (!wave->seen)
+    if (!renderer_camera_ray(renderer, &renderer->camera, &at, &state->sampler, &ray))
         return false;
     lane->camera_rays++;
     state->eye_medium_stack = renderer_eye_media(renderer, &ray, &lane->scratch, &lane->media);
@@ -132,8 +151,17 @@ bool path_wave_begin(const struct path_scene *scene, struct path_lane *lane, str
     return true;
 }
 
+uint32_t path_wave_place(const struct path_wave_state *wave) {
+    return wave->place;
+}
+
+void path_wave_move(struct path_wave_state *to, const struct path_wave_state *from) {
+    *to = *from;
+    to->path.ray.media = &to->path.media;
+}
+
 void path_wave_extend(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *wave) {
-    enter(lane, scene, wave);
+    enter(lane, scene, wave, NULL);
     if (!wave->below)
         extend(&lane->state, &wave->path);
     leave(lane, wave);
@@ -148,31 +176,33 @@ uint32_t path_wave_class(const struct path_scene *scene, const struct path_wave_
                                       : primitive_prototype(scene->job.world, primitive)->material % MATERIALS;
 }
 
-void path_wave_shade(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *wave) {
-    enter(lane, scene, wave);
-    bool goes_on = (wave->below ? come_out : shade)(&scene->tracer, &lane->state, &wave->path, &wave->shadow, NULL);
+void path_wave_shade(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *wave,
+                     struct path_wave_light *light, struct path_wave_result *result) {
+    enter(lane, scene, wave, result);
+    bool goes_on = (wave->below ? come_out : shade)(&scene->tracer, &lane->state, &wave->path, &light->shadow, NULL);
     wave->below = !goes_on && wave->path.kind == RAY_BELOW;
     wave->ended = !goes_on && !wave->below;
     leave(lane, wave);
 }
 
-bool path_wave_shadow(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *wave) {
-    enter(lane, scene, wave);
-    shadow(&scene->tracer, &lane->state, &wave->path, &wave->shadow);
+bool path_wave_shadow(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *wave,
+                      struct path_wave_light *light, struct path_wave_result *result) {
+    enter(lane, scene, wave, result);
+    shadow(&scene->tracer, &lane->state, &wave->path, &light->shadow);
     leave(lane, wave);
-    return !wave->ended && !wave->failed;
+    if (!wave->ended && !wave->failed)
+        return true;
+    result->failed = wave->failed;
+    if (!wave->failed)
+        result->light = finish(&scene->tracer, &lane->state, &wave->path);
+    result->seen_through = lane->state.seen_through;
+    return false;
 }
 
-bool path_wave_add(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *wave,
-                   struct path_pixel *pixel) {
-    struct colour light = colour_all(0);
-    if (wave->failed)
-        return false;
-    enter(lane, scene, wave);
-    if (wave->seen)
-        light = finish(&scene->tracer, &lane->state, &wave->path);
-    path_add(pixel, lane->state.parts, light, wave->seen_through, wave->weight);
-    return true;
+bool path_wave_add(const struct path_scene *scene, const struct path_wave_result *result, struct path_pixel *pixel) {
+    if (!result->failed)
+        path_add(pixel, scene->has_parts ? &result->parts : NULL, result->light, result->seen_through, result->weight);
+    return !result->failed;
 }
 
 /* --- the scene --- */

@@ -39,9 +39,14 @@ struct path_counts {
 };
 void path_counts_add(struct path_counts *to, const struct path_counts *counts);
 
-/* The state of a path between two pieces, path_wave_state_size(scene) bytes; and what a thread needs for a piece. */
+/* Of a path: its state between two pieces, which moves; the light that it asks for at a vertex, from shade to shadow;
+ * and its result, which stays in one place. A place for a state is large enough for that light. Bytes: */
 struct path_wave_state;
-size_t path_wave_state_size(const struct path_scene *scene);
+struct path_wave_light;
+struct path_wave_result;
+size_t path_wave_state_size(void);
+size_t path_wave_result_size(const struct path_scene *scene);
+/* What a thread needs for a piece. */
 struct path_lane;
 /* A lane in memory of that size, a multiple of 16, at a multiple of 16, for queries with at most so many crossings of a
  * line; path_scene_crossings is usually enough. */
@@ -50,19 +55,29 @@ size_t path_lane_size(uint32_t crossings);
 struct path_lane *path_lane_init(void *memory, const struct path_scene *scene, uint32_t crossings);
 struct path_counts path_lane_counts(const struct path_lane *lane); /* of all its pieces */
 
-/* The pieces of path `number` of the order. Paths are numbered pixel by pixel. False: the path is not alive; it still
- * has to be added. */
-bool path_wave_begin(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *state,
-                     const struct path_order *order, uint64_t number);
+/* The first piece of path `number` of the order; paths are numbered pixel by pixel. place: of its result. False: the
+ * path is not alive; it still has to be added. */
+struct path_wave_start {
+    const struct path_order *order;
+    uint64_t number;
+    uint32_t place;
+};
+bool path_wave_begin(const struct path_scene *scene, struct path_lane *lane, const struct path_wave_start *start,
+                     struct path_wave_state *state, struct path_wave_result *result);
+uint32_t path_wave_place(const struct path_wave_state *state);
+/* The state lies elsewhere from now on. */
+void path_wave_move(struct path_wave_state *to, const struct path_wave_state *from);
 void path_wave_extend(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *state);
 /* After it: paths of one class do the same next, by the material that they have met. */
 enum { PATH_CLASSES = 16 };
 uint32_t path_wave_class(const struct path_scene *scene, const struct path_wave_state *state);
-void path_wave_shade(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *state);
-bool path_wave_shadow(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *state);
+/* shadow returns whether the path goes on; otherwise its result is complete. */
+void path_wave_shade(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *state,
+                     struct path_wave_light *light, struct path_wave_result *result);
+bool path_wave_shadow(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *state,
+                      struct path_wave_light *light, struct path_wave_result *result);
 /* In the order of the samples. False: the memory of a query was too small, and the pixel has lost this sample. */
-bool path_wave_add(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *state,
-                   struct path_pixel *pixel);
+bool path_wave_add(const struct path_scene *scene, const struct path_wave_result *result, struct path_pixel *pixel);
 
 /* So many samples of pixels in the middle of the picture, in a square with at most that side. */
 struct path_order path_scene_trial(const struct path_scene *scene, uint32_t side, uint32_t samples);
