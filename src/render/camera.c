@@ -21,41 +21,54 @@ static struct vec3 nearest_axis(struct vec3 forward) {
     return z <= x ? vec3_make(0, 0, 1) : vec3_make(1, 0, 0);
 }
 
+/* What is wrong with a camera; CAMERA_TURNED: its up was replaced, which is no error. */
+enum camera_fault {
+    CAMERA_FINE,
+    CAMERA_TURNED,
+    CAMERA_VIEW,
+    CAMERA_APERTURE,
+    CAMERA_STEREO,
+    CAMERA_FIELD_LENS,
+    CAMERA_FIELD_SIZE,
+    CAMERA_FIELD_PART,
+    CAMERA_WIDTH,
+    CAMERA_FOCUS_BEHIND,
+    CAMERA_FOCUS_SMALL,
+    CAMERA_SCREEN_SMALL
+};
+enum { FILM_SIDE = 1 << 20 };
+
 /* The parts of the frame that only a lens, another projection or a second eye needs. */
-static bool prepare_lens(const struct camera *camera, const struct settings *settings, struct picture_size size,
-                         struct camera_frame *out, struct error *error) {
-    enum { FILM_SIDE = 1 << 20 };
+static enum camera_fault set_lens(const struct camera *camera, const struct settings *settings,
+                                  struct picture_size size, struct camera_frame *out) {
     const struct lens *lens = &settings->lens;
     bool planar = lens->projection == PROJECTION_PERSPECTIVE || lens->projection == PROJECTION_ORTHOGRAPHIC;
     out->lens = *lens;
     if (lens->aperture > 0 && !planar)
-        return error_set(error, ERROR_SCENE, "a lens (aperture) works only with perspective and orthographic pictures");
+        return CAMERA_APERTURE;
     if (lens->stereo != STEREO_NONE && lens->projection != PROJECTION_PERSPECTIVE)
-        return error_set(error, ERROR_SCENE, "stereo works only with perspective pictures");
+        return CAMERA_STEREO;
     if (lens->columns > 0 && (lens->projection != PROJECTION_PERSPECTIVE || lens->aperture > 0 || lens->shift_x != 0 ||
                               lens->shift_y != 0 || lens->stereo != STEREO_NONE))
-        return error_set(error, ERROR_SCENE,
-                         "the views of a light field are perspective pictures through pinholes: they have no aperture, "
-                         "shift or stereo");
+        return CAMERA_FIELD_LENS;
     if (lens->columns > 0 && (size.width > FILM_SIDE || size.height > FILM_SIDE))
-        return error_set(error, ERROR_SCENE, "a light field of %.0f x %.0f pixels; its grid has at most %d on a side",
-                         size.width, size.height, FILM_SIDE);
+        return CAMERA_FIELD_SIZE;
     if (lens->columns > 0 && (settings->cropped || settings->overlay != OVERLAY_NONE))
-        return error_set(error, ERROR_SCENE, "a light field cannot be combined with --crop or --overlay");
+        return CAMERA_FIELD_PART;
     /* Each picture of a pair has half of the width. */
     if (lens->stereo == STEREO_SIDE) {
         if (floor(out->width / 2) != out->width / 2)
-            return error_set(error, ERROR_SCENE, "a stereo pair side by side needs an even width");
+            return CAMERA_WIDTH;
         out->width /= 2;
     }
     /* The plane in focus is given by its distance or by a point of it. */
     out->focus = lens->focus > 0 ? lens->focus : vec3_dot(vec3_sub(lens->focus_point, camera->eye), out->forward);
     if (lens->aperture > 0 && !(out->focus > 0))
-        return error_set(error, ERROR_SCENE, "the point in focus must be in front of the camera");
+        return CAMERA_FOCUS_BEHIND;
     if (lens->aperture > 0 && out->focus < NUMBER_SMALLEST)
-        return error_set(error, ERROR_SCENE, "focus is too small: %g", out->focus);
+        return CAMERA_FOCUS_SMALL;
     if (camera_has_views(out) && lens->screen < NUMBER_SMALLEST)
-        return error_set(error, ERROR_SCENE, "screen is too small: %g", lens->screen);
+        return CAMERA_SCREEN_SMALL;
     /* How wide a pixel is, in the unit of the projection: a length, or an angle. */
     if (lens->projection == PROJECTION_ORTHOGRAPHIC) {
         double pixel = lens->view_height / out->height;
@@ -69,33 +82,29 @@ static bool prepare_lens(const struct camera *camera, const struct settings *set
     }
     if (lens->projection == PROJECTION_PANORAMA)
         out->spread = PI / out->height;
-    return true;
+    return CAMERA_FINE;
 }
 
-bool camera_prepare(const struct camera *camera, const struct settings *settings, struct picture_size size,
-                    struct camera_frame *out, char warning[256], struct error *error) {
+static enum camera_fault set_frame(const struct camera *camera, const struct settings *settings,
+                                   struct picture_size size, struct camera_frame *out) {
     const struct lens *lens = &settings->lens;
+    enum camera_fault fault = CAMERA_FINE;
     double width = size.width, height = size.height;
-    warning[0] = '\0';
     if (lens->columns > 0) {
         width /= lens->columns;
         height /= (double)lens->rows * lens_grids(lens);
     }
     struct vec3 view = settings->view_is_target ? vec3_sub(camera->view, camera->eye) : camera->view;
     if (!vec3_finite(view) || !(vec3_length(view) > 0))
-        return error_set(error, ERROR_SCENE, "%s",
-                         settings->view_is_target ? "view: the point to look at must differ from the eye"
-                                                  : "view: the direction must not be zero");
+        return CAMERA_VIEW;
     out->eye = camera->eye;
     out->forward = vec3_normalize(view);
     struct vec3 up = vec3_normalize(camera->up);
     struct vec3 right = vec3_cross(out->forward, up);
     /* Both are unit vectors: below this sine their plane is rounding noise. */
     if (!(vec3_length(right) > 0x1p-40)) {
-        up = nearest_axis(out->forward);
-        right = vec3_cross(out->forward, up);
-        (void)snprintf(warning, 256, "up is parallel to view (or zero): the axis (%g, %g, %g) is used instead", up.x,
-                       up.y, up.z);
+        right = vec3_cross(out->forward, nearest_axis(out->forward));
+        fault = CAMERA_TURNED;
     }
     right = vec3_normalize(right);
     struct vec3 down = vec3_cross(out->forward, right);
@@ -108,7 +117,54 @@ bool camera_prepare(const struct camera *camera, const struct settings *settings
     out->spread = pixel;
     out->unit_right = right;
     out->unit_down = vec3_normalize(down);
-    return prepare_lens(camera, settings, size, out, error);
+    const enum camera_fault of_lens = set_lens(camera, settings, size, out);
+    return of_lens == CAMERA_FINE ? fault : of_lens;
+}
+
+bool camera_prepare_quietly(const struct camera *camera, const struct settings *settings, struct picture_size size,
+                            struct camera_frame *out) {
+    return set_frame(camera, settings, size, out) <= CAMERA_TURNED;
+}
+
+bool camera_prepare(const struct camera *camera, const struct settings *settings, struct picture_size size,
+                    struct camera_frame *out, char warning[256], struct error *error) {
+    warning[0] = '\0';
+    switch (set_frame(camera, settings, size, out)) {
+    case CAMERA_FINE:
+        return true;
+    case CAMERA_TURNED: {
+        struct vec3 up = nearest_axis(out->forward);
+        (void)snprintf(warning, 256, "up is parallel to view (or zero): the axis (%g, %g, %g) is used instead", up.x,
+                       up.y, up.z);
+        return true;
+    }
+    case CAMERA_VIEW:
+        return error_set(error, ERROR_SCENE, "%s",
+                         settings->view_is_target ? "view: the point to look at must differ from the eye"
+                                                  : "view: the direction must not be zero");
+    case CAMERA_APERTURE:
+        return error_set(error, ERROR_SCENE, "a lens (aperture) works only with perspective and orthographic pictures");
+    case CAMERA_STEREO:
+        return error_set(error, ERROR_SCENE, "stereo works only with perspective pictures");
+    case CAMERA_FIELD_LENS:
+        return error_set(error, ERROR_SCENE,
+                         "the views of a light field are perspective pictures through pinholes: they have no aperture, "
+                         "shift or stereo");
+    case CAMERA_FIELD_SIZE:
+        return error_set(error, ERROR_SCENE, "a light field of %.0f x %.0f pixels; its grid has at most %d on a side",
+                         size.width, size.height, FILM_SIDE);
+    case CAMERA_FIELD_PART:
+        return error_set(error, ERROR_SCENE, "a light field cannot be combined with --crop or --overlay");
+    case CAMERA_WIDTH:
+        return error_set(error, ERROR_SCENE, "a stereo pair side by side needs an even width");
+    case CAMERA_FOCUS_BEHIND:
+        return error_set(error, ERROR_SCENE, "the point in focus must be in front of the camera");
+    case CAMERA_FOCUS_SMALL:
+        return error_set(error, ERROR_SCENE, "focus is too small: %g", out->focus);
+    case CAMERA_SCREEN_SMALL:
+        return error_set(error, ERROR_SCENE, "screen is too small: %g", settings->lens.screen);
+    }
+    return true;
 }
 
 struct camera camera_at(const struct camera *camera, const struct camera_motion *motion, double time) {

@@ -25,6 +25,9 @@ struct camera_frame {
 struct picture_size {
     double width, height; /* pixels */
 };
+/* The same without words, for a camera of which an earlier moment was prepared. False: there is no such view. */
+bool camera_prepare_quietly(const struct camera *camera, const struct settings *settings, struct picture_size size,
+                            struct camera_frame *out);
 /* Errors: view zero or not finite, an impossible lens. Sets *warning to a sentence if up was replaced. */
 bool camera_prepare(const struct camera *camera, const struct settings *settings, struct picture_size size,
                     struct camera_frame *out, char warning[256], struct error *error);

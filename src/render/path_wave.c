@@ -142,7 +142,9 @@ bool path_wave_begin(const struct path_scene *scene, struct path_lane *lane, con
     enter(lane, scene, wave, result);
     state->sampler =
         sampler_make_sobol(scene->job.settings.seed, (uint64_t)at.y * scene->job.width + (uint64_t)at.x, at.number);
-    if (!renderer_camera_ray(renderer, &renderer->camera, &at, &state->sampler, &ray))
+    struct camera_frame own;
+    const struct camera_frame *camera = renderer_camera_of(renderer, &state->sampler, &own);
+    if (!camera || !renderer_camera_ray(renderer, camera, &at, &state->sampler, &ray))
         return false;
     lane->camera_rays++;
     state->eye_medium_stack = renderer_eye_media(renderer, &ray, &lane->scratch, &lane->media);
@@ -227,8 +229,6 @@ const char *path_scene_lacks(const struct path_tracer *tracer, const struct rend
     const struct lens *lens = &renderer->camera.lens;
     if (tracer->photon_lights)
         return "photons (--caustics)";
-    if (renderer->timed && renderer->job->settings.motion.moves)
-        return "a camera that moves while the shutter is open";
     if (lens->stereo == STEREO_ANAGLYPH || lens->depth)
         return "colours of both eyes, and depths of a light field";
     return NULL;
@@ -265,6 +265,7 @@ struct path_order path_scene_trial(const struct path_scene *scene, uint32_t side
 struct bundle *path_scene_bundle(const struct path_tracer *tracer, const struct renderer *renderer) {
     struct path_scene scene = {.tracer = *tracer, .has_parts = path_has_parts(&renderer->job->settings)};
     scene.job = (struct render_job){.world = renderer->job->world,
+                                    .camera = renderer->job->camera,
                                     .settings = renderer->job->settings,
                                     .width = renderer->job->width,
                                     .height = renderer->job->height};

@@ -7,14 +7,27 @@
 
 #include <float.h>
 
-/* The camera at a ray's time. */
+static struct camera moved_camera(const struct render_job *job, double ray_time) {
+    const struct settings *settings = &job->settings;
+    return settings->motion.moves
+               ? camera_at(&job->camera, &settings->motion, shutter_time(settings->shutter, ray_time))
+               : job->camera;
+}
+
 bool renderer_prepare_at(const struct render_job *job, double ray_time, struct camera_frame *out, char warning[256],
                          struct error *error) {
-    const struct settings *settings = &job->settings;
-    struct camera camera = job->camera;
-    if (settings->motion.moves)
-        camera = camera_at(&job->camera, &settings->motion, shutter_time(settings->shutter, ray_time));
-    return camera_prepare(&camera, settings, (struct picture_size){job->width, job->height}, out, warning, error);
+    const struct camera camera = moved_camera(job, ray_time);
+    return camera_prepare(&camera, &job->settings, (struct picture_size){job->width, job->height}, out, warning, error);
+}
+
+const struct camera_frame *renderer_camera_of(const struct renderer *renderer, const struct sampler *sampler,
+                                              struct camera_frame *own) {
+    const struct render_job *job = renderer->job;
+    if (!renderer->timed || !job->settings.motion.moves)
+        return &renderer->camera;
+    const struct camera camera = moved_camera(job, sampler_time(sampler));
+    const struct picture_size size = {job->width, job->height};
+    return camera_prepare_quietly(&camera, &job->settings, size, own) ? own : NULL;
 }
 
 bool renderer_middle_ray(const struct renderer *renderer, double x, double y, struct ray *out) {
@@ -155,14 +168,9 @@ static struct colour sample_single(struct renderer *renderer, struct worker *wor
                                    const struct pixel_sample *position) {
     worker->state.sampler = sampler_of(renderer, position);
     const struct sampler sampler = worker->state.sampler;
-    const struct camera_frame *camera = &renderer->camera;
-    if (renderer->timed && renderer->job->settings.motion.moves) {
-        char warning[256];
-        struct error error;
-        camera = &worker->camera;
-        if (!renderer_prepare_at(renderer->job, sampler_time(&sampler), &worker->camera, warning, &error))
-            return colour_all(0); /* the one moment in which a view turns through zero */
-    }
+    const struct camera_frame *camera = renderer_camera_of(renderer, &sampler, &worker->camera);
+    if (!camera)
+        return colour_all(0);
     if (camera->lens.stereo == STEREO_ANAGLYPH)
         return sample_both_eyes(renderer, worker, camera, position);
     if (camera->lens.depth && view_of(camera, position).depth)

@@ -7,6 +7,9 @@
 /* The camera at a ray's time. */
 bool renderer_prepare_at(const struct render_job *job, double ray_time, struct camera_frame *out, char warning[256],
                          struct error *error);
+/* The camera of a sample; `own` is for one that moves. NULL: the one moment in which a view turns through zero. */
+const struct camera_frame *renderer_camera_of(const struct renderer *renderer, const struct sampler *sampler,
+                                              struct camera_frame *own);
 /* The camera ray through (x, y) and the centre of the lens, when the shutter opens. False: nothing is visible there. */
 bool renderer_middle_ray(const struct renderer *renderer, double x, double y, struct ray *out);
 /* The ray of a sample, with its time and footprint, but not of both eyes. False: nothing is visible there. */

@@ -130,6 +130,15 @@ TEST(waves_through_a_lens_give_the_bytes_of_threads) {
     stage_end(&s);
 }
 
+TEST(waves_from_a_camera_that_moves_give_the_bytes_of_threads) {
+    struct stage s;
+    begin_scene(&s);
+    s.settings.shutter = (struct shutter){0, 0.5};
+    s.settings.motion = (struct camera_motion){true, {0.5, 1.5, 5}, {0.2, -0.2, -1}, {0.1, 1, 0}};
+    check_scene(&s);
+    stage_end(&s);
+}
+
 /* A solid of many operands, in the memory of a single crossing. */
 struct counter {
     struct path_device inner;
