@@ -2,6 +2,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "device/arithmetic_internal.h"
 #include "device/kernels_file.h"
 #include "device/wave_internal.h"
 #include "film/film.h"
@@ -26,8 +27,9 @@ static const double memory_share = 0.8, longest_launch = 0.025, shortest_launch 
 
 #define KERNELS(X)                                                                                                     \
     X(LANES, "lanes")                                                                                                  \
-    X(BEGIN, "begin")                                                                                                  \
-    X(EXTEND, "extend") X(SORT, "sort") X(SHADE, "shade") X(SHADOW, "shadow") X(ADD, "add") X(FINISH, "finish")
+    X(ARITHMETIC, "arithmetic")                                                                                        \
+    X(BEGIN, "begin") X(EXTEND, "extend") X(SORT, "sort") X(SHADE, "shade") X(SHADOW, "shadow") X(ADD, "add")          \
+        X(FINISH, "finish")
 #define KERNEL_MEMBER(member, name) KERNEL_##member,
 #define KERNEL_NAME(member, name) "kernel_" name,
 enum kernel { KERNELS(KERNEL_MEMBER) KERNEL_COUNT };
@@ -139,12 +141,51 @@ const char *cuda_lost(struct cuda *cuda) {
     return atomic_load(&cuda->is_lost) ? cuda->reason : NULL;
 }
 
-/* --- the scene --- */
+/* --- streams --- */
 
 /* Of a path in flight. */
 static uint64_t path_bytes(const struct cuda *cuda) {
     return 2 * path_wave_state_size() + path_wave_result_size(cuda->scene) + 2 * sizeof(uint32_t);
 }
+
+/* A stream of its own for each thread. */
+static struct card_stream *take_stream(struct cuda *cuda) {
+    for (uint32_t i = 0; i < CUDA_STREAMS; i++)
+        if (!atomic_exchange(&cuda->streams[i].taken, true))
+            return &cuda->streams[i];
+    return NULL;
+}
+
+static bool fill_stream(struct cuda *cuda, struct card_stream *stream, struct error *error) {
+    if (stream->lanes)
+        return true;
+    const size_t states = (size_t)cuda->room * path_wave_state_size(), list = cuda->room * sizeof(uint32_t);
+    const size_t results = (size_t)cuda->room * path_wave_result_size(cuda->scene);
+    return CALL(cuda, error, stream_create, &stream->handle, 1 /* no order with stream 0 */) &&
+           CALL(cuda, error, take, &stream->wave, sizeof(struct wave)) &&
+           CALL(cuda, error, take, &stream->states[0], states) && CALL(cuda, error, take, &stream->states[1], states) &&
+           CALL(cuda, error, take, &stream->results, results) && CALL(cuda, error, take, &stream->living[0], list) &&
+           CALL(cuda, error, take, &stream->living[1], list) && CALL(cuda, error, take, &stream->pixels, PIXEL_BYTES) &&
+           CALL(cuda, error, take, &stream->orders, ORDER_BYTES) &&
+           CALL(cuda, error, take, &stream->lanes, cuda->lanes * path_lane_size(cuda->crossings));
+}
+
+/* Launches a kernel with a thread for each item, but not more than there are lanes. last: turn, or count of lanes. */
+static bool launch(struct cuda *cuda, const struct card_stream *stream, enum kernel kernel, uint64_t items,
+                   uint32_t last, struct error *error) {
+    uint64_t first = kernel == KERNEL_LANES        ? stream->lanes
+                     : kernel == KERNEL_ARITHMETIC ? stream->pixels
+                                                   : stream->wave;
+    uint64_t second = kernel == KERNEL_LANES ? cuda->scene_on_card : stream->lanes;
+    void *arguments[] = {&first, &second, &cuda->crossings, &last};
+    const uint64_t threads = items < cuda->lanes ? items : cuda->lanes;
+    const unsigned blocks = (unsigned)((threads + THREADS - 1) / THREADS);
+    atomic_fetch_add(&cuda->launches, 1);
+    return CALL(cuda, error, launch, cuda->kernels[kernel], blocks, 1, 1, THREADS, 1, 1, 0, stream->handle, arguments,
+                NULL);
+}
+
+/* --- the scene --- */
 
 /* The most paths and lanes for which all streams fit into the memory of the card. */
 static bool divide_memory(struct cuda *cuda, size_t idle, struct error *error) {
@@ -161,6 +202,26 @@ static bool divide_memory(struct cuda *cuda, size_t idle, struct error *error) {
     const uint64_t paths = (budget - fixed - cuda->lanes * lane) / state;
     cuda->room = (uint32_t)(paths < LARGEST_WAVE ? paths : LARGEST_WAVE);
     return true;
+}
+
+/* Whether operations and elementary functions of the card have the bits that those of this processor have. */
+static bool try_arithmetic(struct cuda *cuda, struct error *error) {
+    uint64_t *digests = mem_alloc(ARITHMETIC_NUMBERS * sizeof *digests);
+    const struct card_stream *stream = &cuda->streams[0];
+    uint32_t same = 0;
+    if (!digests)
+        return error_no_memory(error, "a card");
+    bool ok =
+        fill_stream(cuda, &cuda->streams[0], error) &&
+        launch(cuda, stream, KERNEL_ARITHMETIC, ARITHMETIC_NUMBERS, 0, error) &&
+        CALL(cuda, error, download, digests, stream->pixels, ARITHMETIC_NUMBERS * sizeof *digests, stream->handle) &&
+        CALL(cuda, error, stream_wait, stream->handle);
+    while (ok && same < ARITHMETIC_NUMBERS && digests[same] == arithmetic_digest(same))
+        same++;
+    mem_free(digests);
+    return ok &&
+           (same == ARITHMETIC_NUMBERS ||
+            error_set(error, ERROR_MACHINE, "the card cannot be used: operations of %s have other bits", cuda->name));
 }
 
 /* Whether the card gives a few samples the bits that this processor gives them. */
@@ -220,7 +281,7 @@ bool cuda_open_scene(struct cuda *cuda, void *bytes, size_t size, const struct p
         return false;
     cuda->scene_on_card = cuda->scene_block + (uint64_t)(root - (const char *)bytes);
     if (!CALL(cuda, error, upload, cuda->scene_block, bytes, size, NULL) || !CALL(cuda, error, stream_wait, NULL) ||
-        !CALL(cuda, error, memory, &idle, &all) || !divide_memory(cuda, idle, error) ||
+        !CALL(cuda, error, memory, &idle, &all) || !divide_memory(cuda, idle, error) || !try_arithmetic(cuda, error) ||
         !try_samples(cuda, here, error) || (cuda->measures && !measure(cuda, error)))
         return false;
     struct device_statistics *statistics = &cuda->statistics;
@@ -240,41 +301,6 @@ struct device_statistics cuda_statistics(struct cuda *cuda) {
 }
 
 /* --- orders --- */
-
-/* A stream of its own for each thread. */
-static struct card_stream *take_stream(struct cuda *cuda) {
-    for (uint32_t i = 0; i < CUDA_STREAMS; i++)
-        if (!atomic_exchange(&cuda->streams[i].taken, true))
-            return &cuda->streams[i];
-    return NULL;
-}
-
-static bool fill_stream(struct cuda *cuda, struct card_stream *stream, struct error *error) {
-    if (stream->lanes)
-        return true;
-    const size_t states = (size_t)cuda->room * path_wave_state_size(), list = cuda->room * sizeof(uint32_t);
-    const size_t results = (size_t)cuda->room * path_wave_result_size(cuda->scene);
-    return CALL(cuda, error, stream_create, &stream->handle, 1 /* no order with stream 0 */) &&
-           CALL(cuda, error, take, &stream->wave, sizeof(struct wave)) &&
-           CALL(cuda, error, take, &stream->states[0], states) && CALL(cuda, error, take, &stream->states[1], states) &&
-           CALL(cuda, error, take, &stream->results, results) && CALL(cuda, error, take, &stream->living[0], list) &&
-           CALL(cuda, error, take, &stream->living[1], list) && CALL(cuda, error, take, &stream->pixels, PIXEL_BYTES) &&
-           CALL(cuda, error, take, &stream->orders, ORDER_BYTES) &&
-           CALL(cuda, error, take, &stream->lanes, cuda->lanes * path_lane_size(cuda->crossings));
-}
-
-/* Launches a kernel with a thread for each item, but not more than there are lanes. last: turn, or count of lanes. */
-static bool launch(struct cuda *cuda, const struct card_stream *stream, enum kernel kernel, uint64_t items,
-                   uint32_t last, struct error *error) {
-    uint64_t first = kernel == KERNEL_LANES ? stream->lanes : stream->wave;
-    uint64_t second = kernel == KERNEL_LANES ? cuda->scene_on_card : stream->lanes;
-    void *arguments[] = {&first, &second, &cuda->crossings, &last};
-    const uint64_t threads = items < cuda->lanes ? items : cuda->lanes;
-    const unsigned blocks = (unsigned)((threads + THREADS - 1) / THREADS);
-    atomic_fetch_add(&cuda->launches, 1);
-    return CALL(cuda, error, launch, cuda->kernels[kernel], blocks, 1, 1, THREADS, 1, 1, 0, stream->handle, arguments,
-                NULL);
-}
 
 /* All turns of a wave; the wave in memory is that on the card afterwards. */
 static bool run_wave(struct cuda *cuda, const struct card_stream *stream, struct wave *wave, struct error *error) {

@@ -1,5 +1,6 @@
 /* The kernels of a card: each thread takes every so many-th path of a wave, with a lane of its own. Arguments are
  * addresses on the card. Compiled for cards alone (tools/device_scan.sh). */
+#include "device/arithmetic_internal.h"
 #include "device/wave_internal.h"
 
 #if defined GRAY_DEVICE || defined GRAY_PLAYED_CARD
@@ -30,6 +31,7 @@ static uint32_t thread_count(void) {
 
 /* crossings: of the memory of each lane. */
 void kernel_lanes(uint64_t lanes, uint64_t scene, uint32_t crossings);
+void kernel_arithmetic(uint64_t digests);
 void kernel_begin(uint64_t wave, uint64_t lanes, uint32_t crossings);
 void kernel_extend(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
 void kernel_sort(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
@@ -44,6 +46,11 @@ static void *lane_of(uint64_t lanes, uint32_t crossings) {
 
 void kernel_lanes(uint64_t lanes, uint64_t scene, uint32_t crossings) {
     (void)path_lane_init(lane_of(lanes, crossings), (const struct path_scene *)(uintptr_t)scene, crossings);
+}
+
+void kernel_arithmetic(uint64_t digests) {
+    for (uint32_t i = thread_index(); i < ARITHMETIC_NUMBERS; i += thread_count())
+        ((uint64_t *)(uintptr_t)digests)[i] = arithmetic_digest(i);
 }
 
 void kernel_begin(uint64_t wave, uint64_t lanes, uint32_t crossings) {

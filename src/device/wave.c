@@ -9,8 +9,8 @@ static struct path_wave_light *light_of(const struct wave *wave, uint32_t turn, 
     return (struct path_wave_light *)(void *)(wave->states[turn % 2] + i * wave->state_size);
 }
 
-static struct path_wave_result *result_of(const struct wave *wave, uint32_t place) {
-    return (struct path_wave_result *)(void *)(wave->results + place * wave->result_size);
+static struct path_wave_result *result_of(const struct wave *wave, uint32_t number) {
+    return (struct path_wave_result *)(void *)(wave->results + number * wave->result_size);
 }
 
 /* Their order depends on the threads of a card. No path knows of another one, so no byte does. */
@@ -65,12 +65,12 @@ void wave_sort(struct wave *wave, uint32_t turn, uint32_t k) {
 
 void wave_shade(struct wave *wave, struct path_lane *lane, uint32_t turn, uint32_t k) {
     struct path_wave_state *state = state_of(wave, turn + 1, k);
-    path_wave_shade(wave->scene, lane, state, light_of(wave, turn, k), result_of(wave, path_wave_place(state)));
+    path_wave_shade(wave->scene, lane, state, light_of(wave, turn, k), result_of(wave, path_wave_number(state)));
 }
 
 void wave_shadow(struct wave *wave, struct path_lane *lane, uint32_t turn, uint32_t k) {
     struct path_wave_state *state = state_of(wave, turn + 1, k);
-    struct path_wave_result *result = result_of(wave, path_wave_place(state));
+    struct path_wave_result *result = result_of(wave, path_wave_number(state));
     if (path_wave_shadow(wave->scene, lane, state, light_of(wave, turn, k), result))
         keep_alive(wave, turn + 1, k);
 }

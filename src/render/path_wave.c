@@ -16,7 +16,7 @@
 struct path_wave_state {
     struct path path;
     double seen_through;
-    uint32_t place;
+    uint32_t number;
     bool below; /* the next piece is come_out, not extend and shade */
     bool ended; /* but for the light that is on its way */
     bool failed;
@@ -30,7 +30,7 @@ struct path_wave_result {
     bool failed;
     struct path_parts parts; /* with scene->has_parts */
 };
-_Static_assert(sizeof(struct path_wave_light) <= sizeof(struct path_wave_state), "they share places");
+_Static_assert(sizeof(struct path_wave_light) <= sizeof(struct path_wave_state), "they share memory");
 _Static_assert(2 * sizeof(struct path_wave_state) + offsetof(struct path_wave_result, parts) <= 1160,
                "millions of paths fit into memory");
 
@@ -124,10 +124,10 @@ bool path_wave_begin(const struct path_scene *scene, struct path_lane *lane, con
     const struct renderer *renderer = &scene->renderer;
     const struct path_order *order = start->order;
     const uint32_t each = order->end - order->begin;
-    const uint64_t pixel = start->number / each, width = order->x1 - order->x0;
+    const uint64_t pixel = start->path / each, width = order->x1 - order->x0;
     const struct pixel_sample at =
         path_sample_position(&scene->tracer, &scene->job, order->x0 + (int64_t)(pixel % width),
-                             order->y0 + (int64_t)(pixel / width), order->begin + (uint32_t)(start->number % each));
+                             order->y0 + (int64_t)(pixel / width), order->begin + (uint32_t)(start->path % each));
     struct integrator_state *state = &lane->state;
     struct ray ray;
     if (scene->has_parts)
@@ -136,7 +136,7 @@ bool path_wave_begin(const struct path_scene *scene, struct path_lane *lane, con
     result->seen_through = 0;
     result->weight = at.weight;
     result->failed = false;
-    wave->place = start->place;
+    wave->number = start->number;
     wave->seen_through = 0;
     wave->failed = wave->below = wave->ended = false;
     enter(lane, scene, wave, result);
@@ -153,8 +153,8 @@ bool path_wave_begin(const struct path_scene *scene, struct path_lane *lane, con
     return true;
 }
 
-uint32_t path_wave_place(const struct path_wave_state *wave) {
-    return wave->place;
+uint32_t path_wave_number(const struct path_wave_state *wave) {
+    return wave->number;
 }
 
 void path_wave_move(struct path_wave_state *to, const struct path_wave_state *from) {

@@ -40,7 +40,7 @@ struct path_counts {
 void path_counts_add(struct path_counts *to, const struct path_counts *counts);
 
 /* Of a path: its state between two pieces, which moves; the light that it asks for at a vertex, from shade to shadow;
- * and its result, which stays in one place. A place for a state is large enough for that light. Bytes: */
+ * and its result, which does not move. Memory for a state is large enough for that light. Bytes: */
 struct path_wave_state;
 struct path_wave_light;
 struct path_wave_result;
@@ -55,16 +55,16 @@ size_t path_lane_size(uint32_t crossings);
 struct path_lane *path_lane_init(void *memory, const struct path_scene *scene, uint32_t crossings);
 struct path_counts path_lane_counts(const struct path_lane *lane); /* of all its pieces */
 
-/* The first piece of path `number` of the order; paths are numbered pixel by pixel. place: of its result. False: the
- * path is not alive; it still has to be added. */
+/* The first piece of a path of the order; these are numbered pixel by pixel. number: of the path in its wave, which its
+ * state keeps. False: the path is not alive; it still has to be added. */
 struct path_wave_start {
     const struct path_order *order;
-    uint64_t number;
-    uint32_t place;
+    uint64_t path;
+    uint32_t number;
 };
 bool path_wave_begin(const struct path_scene *scene, struct path_lane *lane, const struct path_wave_start *start,
                      struct path_wave_state *state, struct path_wave_result *result);
-uint32_t path_wave_place(const struct path_wave_state *state);
+uint32_t path_wave_number(const struct path_wave_state *state);
 /* The state lies elsewhere from now on. */
 void path_wave_move(struct path_wave_state *to, const struct path_wave_state *from);
 void path_wave_extend(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *state);

@@ -35,16 +35,17 @@ static struct {
     int capability;  /* the first number */
     int until_error; /* calls; below 0: none */
     _Atomic int calls;
-    bool is_wrong;    /* in a bit of what it adds */
+    enum { RIGHT, WRONG_SAMPLE, WRONG_SINE } is_wrong; /* in a bit */
     uint32_t waiting; /* threads for it, beside those of the processor; 0: these wait for it */
     struct file_bytes kernels;
 } card = {.mutex = PTHREAD_MUTEX_INITIALIZER};
 
 /* What a file of kernels has. */
 #define PLAYED_MODULE(kernel) kernel " 8\nkernels\0"
-static const char played_kernels[] = "gray kernels\n" PLAYED_MODULE("kernel_lanes") PLAYED_MODULE("kernel_begin")
-    PLAYED_MODULE("kernel_extend") PLAYED_MODULE("kernel_sort") PLAYED_MODULE("kernel_shade")
-        PLAYED_MODULE("kernel_shadow") PLAYED_MODULE("kernel_add") PLAYED_MODULE("kernel_finish");
+static const char played_kernels[] =
+    "gray kernels\n" PLAYED_MODULE("kernel_lanes") PLAYED_MODULE("kernel_arithmetic") PLAYED_MODULE("kernel_begin")
+        PLAYED_MODULE("kernel_extend") PLAYED_MODULE("kernel_sort") PLAYED_MODULE("kernel_shade")
+            PLAYED_MODULE("kernel_shadow") PLAYED_MODULE("kernel_add") PLAYED_MODULE("kernel_finish");
 
 static void reset_card(void) {
     for (int i = 0; i < card.block_count; i++)
@@ -54,7 +55,7 @@ static void reset_card(void) {
     card.idle = 400 << 20;
     card.capability = 9;
     card.until_error = -1;
-    card.is_wrong = false;
+    card.is_wrong = RIGHT;
     card.waiting = 0;
     card.kernels = (struct file_bytes){(const uint8_t *)played_kernels, sizeof played_kernels - 1};
 }
@@ -149,8 +150,9 @@ static int play_load(void **module, const void *image) {
     return answer();
 }
 
-static const char *const kernel_names[] = {"kernel_lanes", "kernel_begin",  "kernel_extend", "kernel_sort",
-                                           "kernel_shade", "kernel_shadow", "kernel_add",    "kernel_finish"};
+static const char *const kernel_names[] = {"kernel_lanes",  "kernel_arithmetic", "kernel_begin",
+                                           "kernel_extend", "kernel_sort",       "kernel_shade",
+                                           "kernel_shadow", "kernel_add",        "kernel_finish"};
 static int play_function(void **function, void *module, const char *name) {
     (void)module;
     for (size_t i = 0; i < sizeof kernel_names / sizeof *kernel_names; i++)
@@ -172,6 +174,7 @@ static int play_wait(void *stream) {
 /* Kernels that are compiled here, or from the bitcode for cards. */
 struct kernels {
     void (*lanes)(uint64_t lanes, uint64_t scene, uint32_t crossings);
+    void (*arithmetic)(uint64_t digests);
     void (*begin)(uint64_t wave, uint64_t lanes, uint32_t crossings);
     void (*extend)(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
     void (*sort)(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
@@ -181,31 +184,36 @@ struct kernels {
     void (*finish)(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t count);
     uint32_t *thread, *threads;
 };
-static const struct kernels own = {kernel_lanes,  kernel_begin, kernel_extend, kernel_sort,    kernel_shade,
-                                   kernel_shadow, kernel_add,   kernel_finish, &played_thread, &played_threads};
+static const struct kernels own = {kernel_lanes,  kernel_arithmetic, kernel_begin,   kernel_extend,
+                                   kernel_sort,   kernel_shade,      kernel_shadow,  kernel_add,
+                                   kernel_finish, &played_thread,    &played_threads};
 static struct kernels kernels;
 
+enum { ARITHMETIC = 1, ADD = 7 };
 static void run_kernel(int kernel, uint64_t first, uint64_t second, uint32_t crossings, uint32_t last) {
     switch (kernel) {
     case 0:
         kernels.lanes(first, second, crossings);
         break;
     case 1:
-        kernels.begin(first, second, crossings);
+        kernels.arithmetic(first);
         break;
     case 2:
-        kernels.extend(first, second, crossings, last);
+        kernels.begin(first, second, crossings);
         break;
     case 3:
-        kernels.sort(first, second, crossings, last);
+        kernels.extend(first, second, crossings, last);
         break;
     case 4:
-        kernels.shade(first, second, crossings, last);
+        kernels.sort(first, second, crossings, last);
         break;
     case 5:
-        kernels.shadow(first, second, crossings, last);
+        kernels.shade(first, second, crossings, last);
         break;
     case 6:
+        kernels.shadow(first, second, crossings, last);
+        break;
+    case ADD:
         kernels.add(first, second, crossings);
         break;
     default:
@@ -228,8 +236,10 @@ static int play_launch(void *function, unsigned blocks, unsigned y, unsigned z, 
         run_kernel(kernel, *(uint64_t *)arguments[0], *(uint64_t *)arguments[1], *(uint32_t *)arguments[2],
                    *(uint32_t *)arguments[3]);
     }
-    if (kernel == 6 && card.is_wrong)
+    if (kernel == ADD && card.is_wrong == WRONG_SAMPLE)
         ((struct wave *)(uintptr_t) * (uint64_t *)arguments[0])->pixels->sums[0].r += 0x1p-30F;
+    if (kernel == ARITHMETIC && card.is_wrong == WRONG_SINE)
+        (*(uint64_t **)arguments[0])[ARITHMETIC_NUMBERS - 1] ^= 1;
     enter(false);
     return 0;
 }
@@ -360,6 +370,7 @@ TEST(what_a_ray_touches_compiles_for_cards_and_gives_the_bytes_of_threads) {
     begin_scene(&s);
     float *floats = film_of_threads(&s, &size);
     find_symbol(library, "kernel_lanes", &kernels.lanes);
+    find_symbol(library, "kernel_arithmetic", &kernels.arithmetic);
     find_symbol(library, "kernel_begin", &kernels.begin);
     find_symbol(library, "kernel_extend", &kernels.extend);
     find_symbol(library, "kernel_sort", &kernels.sort);
@@ -403,7 +414,12 @@ TEST(a_card_with_other_bits_or_too_little_memory_or_too_old_is_refused_with_the_
     begin_scene(&s);
     s.settings.path_samples = 1;
     float *floats = film_of_threads(&s, &size);
-    card.is_wrong = true;
+    card.is_wrong = WRONG_SINE;
+    check_picture(&s, floats, size, reason, sizeof reason);
+    CHECK_TEXT(reason,
+               "the card cannot be used: operations of played card (capability 9.0, driver 12.4) have other bits");
+    reset_card();
+    card.is_wrong = WRONG_SAMPLE;
     check_picture(&s, floats, size, reason, sizeof reason);
     CHECK_TEXT(reason, "the card cannot be used: samples of played card (capability 9.0, driver 12.4) have other bits");
     reset_card();
