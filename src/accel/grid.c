@@ -343,12 +343,3 @@ bool grid_traversal_next(struct grid_traversal *traversal) {
         return offer_everything(traversal);
     return advance(traversal, traversal->voxels > 0);
 }
-
-void grid_bundle(struct bundle *bundle, void *voxels) {
-    struct grid *grid = voxels;
-    const size_t cells = (size_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
-    const size_t items = grid->cell_start ? grid->cell_start[cells] : 0;
-    BUNDLE(bundle, grid->cell_items, items, NULL);
-    BUNDLE(bundle, grid->cell_start, cells + 1, NULL);
-    BUNDLE(bundle, grid->unbounded, grid->unbounded_count, NULL);
-}

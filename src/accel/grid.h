@@ -4,7 +4,6 @@
 #ifndef GRAY_ACCEL_GRID_H
 #define GRAY_ACCEL_GRID_H
 
-#include "base/bundle.h"
 #include "base/error.h"
 #include "base/pool.h"
 #include "math/box.h"
@@ -45,7 +44,5 @@ struct grid_traversal {
 };
 bool grid_traversal_begin(struct grid_traversal *traversal, const struct grid *grid, const struct ray *ray);
 bool grid_traversal_next(struct grid_traversal *traversal);
-/* What it points to (base/bundle.h). */
-bundle_fields grid_bundle;
 
 #endif

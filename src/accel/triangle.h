@@ -61,15 +61,15 @@ static inline double triangle_edge(double ax, double ay, double bx, double by) {
     return __builtin_expect(clear | zero, 1) ? e : triangle_edge_exact(ax, ay, bx, by);
 }
 
-/* Whether the whole line meets the triangle, and where. hit->triangle does not change. */
-static inline bool triangle_cross(const struct triangle_ray *ray, const double a[3], const double b[3],
-                                  const double c[3], struct triangle_hit *hit) {
+/* triangle_cross for corners as they are seen from the origin, with the axes of the ray. */
+static inline __attribute__((always_inline)) bool triangle_cross_seen(const double shear[3], const double a[3],
+                                                                      const double b[3], const double c[3],
+                                                                      struct triangle_hit *hit) {
     /* The corners in the sheared space of the ray. */
-    int x = ray->x, y = ray->y, z = ray->z;
-    double az = a[z] - ray->origin[z], bz = b[z] - ray->origin[z], cz = c[z] - ray->origin[z];
-    double ax = (a[x] - ray->origin[x]) - ray->shear[0] * az, ay = (a[y] - ray->origin[y]) - ray->shear[1] * az;
-    double bx = (b[x] - ray->origin[x]) - ray->shear[0] * bz, by = (b[y] - ray->origin[y]) - ray->shear[1] * bz;
-    double cx = (c[x] - ray->origin[x]) - ray->shear[0] * cz, cy = (c[y] - ray->origin[y]) - ray->shear[1] * cz;
+    double az = a[2], bz = b[2], cz = c[2];
+    double ax = a[0] - shear[0] * az, ay = a[1] - shear[1] * az;
+    double bx = b[0] - shear[0] * bz, by = b[1] - shear[1] * bz;
+    double cx = c[0] - shear[0] * cz, cy = c[1] - shear[1] * cz;
     /* The edge functions; the ray passes if their signs differ. */
     double u = triangle_edge(cx, cy, bx, by);
     double v = triangle_edge(ax, ay, cx, cy);
@@ -89,11 +89,22 @@ static inline bool triangle_cross(const struct triangle_ray *ray, const double a
     if (w == 0 && (triangle_edge_tie(bx, by, ax, ay) > 0) != positive)
         return false;
     /* Where it is. */
-    hit->t = (u * az + v * bz + w * cz) / sum * ray->shear[2];
+    hit->t = (u * az + v * bz + w * cz) / sum * shear[2];
     hit->u = v / sum;
     hit->v = w / sum;
     hit->enter = positive;
     return true;
+}
+
+/* Whether the whole line meets the triangle, and where. hit->triangle does not change. */
+static inline bool triangle_cross(const struct triangle_ray *ray, const double a[3], const double b[3],
+                                  const double c[3], struct triangle_hit *hit) {
+    const double *origin = ray->origin;
+    int x = ray->x, y = ray->y, z = ray->z;
+    const double seen_a[3] = {a[x] - origin[x], a[y] - origin[y], a[z] - origin[z]};
+    const double seen_b[3] = {b[x] - origin[x], b[y] - origin[y], b[z] - origin[z]};
+    const double seen_c[3] = {c[x] - origin[x], c[y] - origin[y], c[z] - origin[z]};
+    return triangle_cross_seen(ray->shear, seen_a, seen_b, seen_c, hit);
 }
 
 #endif

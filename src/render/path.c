@@ -227,11 +227,15 @@ static bool begin_device(struct path_tracer *tracer, struct renderer *renderer, 
         if (!device->is_worth(device->context, &threads))
             return true;
     }
-    struct bundle *scene = path_scene_bundle(tracer, renderer);
-    if (!scene)
-        return error_no_memory(error, "the scene for a device");
-    bool is_used = false, ok = device->begin(device->context, scene, &is_used, error);
+    struct device_search search;
+    if (!device_search_build(&search, renderer->job->world, renderer->pool, error))
+        return false;
+    struct bundle *scene = path_scene_bundle(tracer, renderer, &search);
+    bool is_used = false;
+    bool ok = scene ? device->begin(device->context, scene, &is_used, error)
+                    : error_no_memory(error, "the scene for a device");
     bundle_destroy(scene);
+    device_search_destroy(&search);
     /* The last workers wait for the device; if there are only those of the processor, these do. */
     const int first = device->waiting > 0 ? pool_workers(renderer->pool) : 0;
     for (int i = first; ok && is_used && i < renderer->worker_count; i++) {

@@ -227,6 +227,8 @@ size_t path_scene_size(void) {
 
 const char *path_scene_lacks(const struct path_tracer *tracer, const struct renderer *renderer) {
     const struct lens *lens = &renderer->camera.lens;
+    if (renderer->job->world->primitive_count > DEVICE_SEARCH_PRIMITIVES)
+        return "more than 268,435,456 primitives";
     if (tracer->photon_lights)
         return "photons (--caustics)";
     if (lens->stereo == STEREO_ANAGLYPH || lens->depth)
@@ -262,9 +264,12 @@ struct path_order path_scene_trial(const struct path_scene *scene, uint32_t side
                                0, samples};
 }
 
-struct bundle *path_scene_bundle(const struct path_tracer *tracer, const struct renderer *renderer) {
+struct bundle *path_scene_bundle(const struct path_tracer *tracer, const struct renderer *renderer,
+                                 const struct device_search *search) {
+    const struct world world = device_search_world(search, renderer->job->world);
     struct path_scene scene = {.tracer = *tracer, .has_parts = path_has_parts(&renderer->job->settings)};
-    scene.job = (struct render_job){.world = renderer->job->world,
+    scene.tracer.lights.world = &world;
+    scene.job = (struct render_job){.world = &world,
                                     .camera = renderer->job->camera,
                                     .settings = renderer->job->settings,
                                     .width = renderer->job->width,

@@ -4,6 +4,7 @@
 
 #include "render/path_internal.h"
 #include "render/path_wave.h"
+#include "world/device_search.h"
 
 struct path_scene {
     struct render_job job; /* the first, to which `renderer` points */
@@ -14,7 +15,8 @@ struct path_scene {
 
 /* What waves do not have, as the end of a sentence; NULL: nothing that the scene needs. */
 const char *path_scene_lacks(const struct path_tracer *tracer, const struct renderer *renderer);
-/* The scene with all that its paths read. NULL: no memory. */
-struct bundle *path_scene_bundle(const struct path_tracer *tracer, const struct renderer *renderer);
+/* The scene with all that its paths read, and their search, which is borrowed until bundle_write. NULL: no memory. */
+struct bundle *path_scene_bundle(const struct path_tracer *tracer, const struct renderer *renderer,
+                                 const struct device_search *search);
 
 #endif

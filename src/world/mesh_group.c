@@ -112,14 +112,3 @@ size_t mesh_group_memory(const struct mesh_group *group) {
         return 0;
     return group->set.count * triangle + triangle_index_memory(group->index) + box_tree_memory(&group->rest);
 }
-
-void mesh_group_bundle(struct bundle *bundle, struct mesh_group *group, uint32_t primitive_count) {
-    if (!group->index)
-        return;
-    triangle_set_bundle(bundle, &group->set);
-    triangle_index_bundle(bundle, &group->index);
-    BUNDLE(bundle, group->first, primitive_count + 1, NULL);
-    BUNDLE(bundle, group->primitive, group->set.count, NULL);
-    BUNDLE(bundle, group->facets, group->set.count, NULL);
-    box_tree_bundle(bundle, &group->rest);
-}

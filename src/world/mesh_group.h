@@ -7,7 +7,6 @@
 #include "accel/box_tree.h"
 #include "accel/triangle_index.h"
 #include "base/arena.h"
-#include "base/bundle.h"
 #include "math/ray.h"
 
 struct world;
@@ -53,7 +52,5 @@ static inline struct triangle_run mesh_group_skipped(const struct mesh_group *gr
         run = (struct triangle_run){run.first + ray->skip_part - 1, 1};
     return run;
 }
-/* What it points to (base/bundle.h), in a world with so many primitives. */
-void mesh_group_bundle(struct bundle *bundle, struct mesh_group *group, uint32_t primitive_count);
 
 #endif

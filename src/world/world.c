@@ -4,6 +4,7 @@
 
 #include "base/mem.h"
 #include "material/material_eval.h"
+#include "world/device_search.h"
 #include "world/flatten_internal.h"
 #include "world/flatten_material_internal.h"
 #include "world/joint.h"
@@ -117,6 +118,21 @@ bool world_ask_any(const struct world *world, uint32_t index, const struct ray *
 }
 
 /* --- the accelerator --- */
+
+#ifdef GRAY_DEVICE /* worlds are those of bundles */
+
+bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
+                            uint32_t *primitive, struct crossing *crossing) {
+    scratch->rays++;
+    return device_search_nearest(world, ray, scratch, primitive, crossing);
+}
+
+bool world_any(const struct world *world, const struct ray *ray, struct world_scratch *scratch) {
+    scratch->any_rays++;
+    return device_search_any(world, ray, scratch);
+}
+
+#else
 
 /* Always a constant where it is passed, so that each search is compiled without the other. */
 enum search_mode { SEARCH_NEAREST, SEARCH_ANY };
@@ -312,6 +328,17 @@ FOR_EACH_MODE void search_all(struct search *s, enum search_mode mode) {
     }
 }
 
+/* The world of a bundle. */
+FOR_EACH_MODE void search_for_device(struct search *s, enum search_mode mode) {
+    if (mode == SEARCH_NEAREST) {
+        s->best = s->next;
+        s->found = device_search_nearest(s->world, s->ray, s->scratch, &s->primitive, s->best);
+        return;
+    }
+    s->found = device_search_any(s->world, s->ray, s->scratch);
+    s->primitive = WORLD_NOTHING;
+}
+
 FOR_EACH_MODE void search_accel(struct search *s, enum search_mode mode) {
     switch (s->world->accel.kind) {
     case ACCEL_AUTO:
@@ -325,7 +352,10 @@ FOR_EACH_MODE void search_accel(struct search *s, enum search_mode mode) {
         search_kd_tree(s, mode);
         return;
     case ACCEL_NONE:
-        search_all(s, mode);
+        if (s->world->device)
+            search_for_device(s, mode);
+        else
+            search_all(s, mode);
         return;
     }
 }
@@ -352,19 +382,6 @@ bool world_nearest_crossing(const struct world *world, const struct ray *ray, st
     return s.found;
 }
 
-bool world_nearest_of(const struct world *world, uint32_t primitive, const struct ray *ray,
-                      struct world_scratch *scratch, struct crossing *crossing) {
-    struct ray ray_object = primitive_ray(world, primitive, ray);
-    scratch->rays++;
-    return !ray_skips(ray, primitive) && world_ask_nearest(world, primitive, &ray_object, scratch, crossing);
-}
-
-bool world_nearest(const struct world *world, const struct ray *ray, struct world_scratch *scratch, struct hit *hit) {
-    struct joint joint;
-    return world_nearest_surface(world, ray, scratch, hit) &&
-           (!world_touches(world, hit) || world_join(world, ray, scratch, hit, &joint));
-}
-
 bool world_any(const struct world *world, const struct ray *ray, struct world_scratch *scratch) {
     /* Neighbouring shadow rays mostly have the same occluder: it is tested first. The result does not depend on it. */
     uint32_t *blocker = &scratch->shadow_cache[scratch->light];
@@ -388,6 +405,21 @@ bool world_any(const struct world *world, const struct ray *ray, struct world_sc
         search_accel(&s, SEARCH_ANY);
     *blocker = s.found ? s.primitive : WORLD_NOTHING;
     return s.found;
+}
+
+#endif
+
+bool world_nearest_of(const struct world *world, uint32_t primitive, const struct ray *ray,
+                      struct world_scratch *scratch, struct crossing *crossing) {
+    struct ray ray_object = primitive_ray(world, primitive, ray);
+    scratch->rays++;
+    return !ray_skips(ray, primitive) && world_ask_nearest(world, primitive, &ray_object, scratch, crossing);
+}
+
+bool world_nearest(const struct world *world, const struct ray *ray, struct world_scratch *scratch, struct hit *hit) {
+    struct joint joint;
+    return world_nearest_surface(world, ray, scratch, hit) &&
+           (!world_touches(world, hit) || world_join(world, ray, scratch, hit, &joint));
 }
 
 void world_medium_stack(const struct world *world, const struct inside_query *query, struct world_scratch *scratch,
@@ -833,12 +865,6 @@ static void bundle_local_medium(struct bundle *bundle, void *local_medium) {
     medium_bundle(bundle, &((struct local_medium *)local_medium)->inner);
 }
 
-static void bundle_accel(struct bundle *bundle, struct scene_accel *accel) {
-    grid_bundle(bundle, &accel->grid);
-    box_tree_bundle(bundle, &accel->tree);
-    kd_tree_bundle(bundle, &accel->kd_tree);
-}
-
 void world_bundle(struct bundle *bundle, void *flattened) {
     struct world *world = flattened;
     const uint32_t primitives = world->primitive_count, materials = world->material_count;
@@ -862,7 +888,6 @@ void world_bundle(struct bundle *bundle, void *flattened) {
     BUNDLE(bundle, world->solid_materials, solids, NULL);
     BUNDLE(bundle, world->lights, world->light_count, light_bundle);
     sky_bundle(bundle, &world->sky);
-    bundle_accel(bundle, &world->accel);
-    mesh_group_bundle(bundle, &world->group, primitives);
+    BUNDLE(bundle, world->device, 1, device_search_bundle);
     touching_bundle(bundle, &world->touching, primitives);
 }

@@ -67,6 +67,7 @@ struct primitive {
 #define LINEAR_MOVING (UINT32_C(1) << 31) /* with the number of an entry in world->moving */
 
 struct local_medium;
+struct device_search;
 struct world {
     const struct primitive *primitives;
     struct prototype *prototypes; /* owned, as are maps and moving */
@@ -97,6 +98,8 @@ struct world {
     struct sky sky;
     struct scene_accel accel;
     struct mesh_group group; /* single rays search it and its `rest` in place of accel.tree */
+    /* In a bundle: searches read it in place of `accel` and `group`, which are empty (world/device_search.h). */
+    const struct device_search *device;
     struct touching touching;
     enum accel_kind mesh_accel; /* of the meshes: as requested */
     bool classic;               /* as requested */
@@ -247,7 +250,7 @@ uint32_t world_containing(const struct world *world, const struct inside_query *
 /* The media of the transparent solids that contain the point, found by counting crossings. */
 void world_medium_stack(const struct world *world, const struct inside_query *query, struct world_scratch *scratch,
                         struct medium_stack *out);
-/* What it points to (base/bundle.h), but for the authored objects. */
+/* What a world of device_search_world points to (base/bundle.h), but for the authored objects. */
 bundle_fields world_bundle;
 
 #endif

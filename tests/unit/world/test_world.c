@@ -4,6 +4,7 @@
 #include "shape/planar.h"
 #include "tests/stage.h"
 #include "tests/unit/shape_makers.h"
+#include "world/device_search.h"
 #include "world/packet.h"
 
 #include <float.h>
@@ -111,17 +112,23 @@ static void compare_with_brute_force(enum accel_kind accel, int worlds, int rays
         }
         struct world brute = s.world;
         brute.accel.kind = brute.mesh_accel = ACCEL_NONE;
+        struct device_search search;
+        CHECK(device_search_build(&search, &s.world, s.pool, &s.error));
+        const struct world device = device_search_world(&search, &s.world);
         struct world_scratch scratch;
         CHECK(world_scratch_init(&scratch, &s.world));
         int wrong = 0;
         for (int i = 0; i < rays; i++) {
             struct ray ray = random_ray(&random, spread);
-            uint32_t a = 0, b = 0;
-            struct crossing x = {0}, y = {0};
+            uint32_t a = 0, b = 0, c = 0;
+            struct crossing x = {0}, y = {0}, z = {0};
             bool hit_a = world_nearest_crossing(&s.world, &ray, &scratch, &a, &x);
             bool hit_b = world_nearest_crossing(&brute, &ray, &scratch, &b, &y);
+            bool hit_c = world_nearest_crossing(&device, &ray, &scratch, &c, &z);
             bool same = hit_a == hit_b && (!hit_a || (a == b && x.t == y.t && x.part == y.part && x.leaf == y.leaf));
             same = same && world_any(&s.world, &ray, &scratch) == hit_b;
+            same = same && hit_c == hit_b && (!hit_a || (a == c && x.t == z.t && x.part == z.part && x.leaf == z.leaf));
+            same = same && world_any(&device, &ray, &scratch) == hit_b;
             wrong += !same;
             if (!same && wrong < 3)
                 test_fail(__FILE__, __LINE__, "world %d ray %d: %d #%u t=%.17g, brute force %d #%u t=%.17g", w, i,
@@ -129,6 +136,7 @@ static void compare_with_brute_force(enum accel_kind accel, int worlds, int rays
         }
         CHECK_EQ_INT(wrong, 0);
         world_scratch_destroy(&scratch);
+        device_search_destroy(&search);
         stage_end(&s);
         shape_makers_destroy(&makers);
     }
@@ -255,6 +263,9 @@ TEST(the_primitive_that_a_ray_skips_would_not_have_been_met) {
             CHECK(node_add_child(&s.scene, root, node, &s.error));
         }
         CHECK(stage_build(&s, root, w % 2 ? ACCEL_AUTO : ACCEL_GRID));
+        struct device_search search;
+        CHECK(device_search_build(&search, &s.world, s.pool, &s.error));
+        const struct world device = device_search_world(&search, &s.world);
         struct world_scratch scratch;
         CHECK(world_scratch_init(&scratch, &s.world));
         for (int i = 0; i < 3000; i++) {
@@ -284,6 +295,9 @@ TEST(the_primitive_that_a_ray_skips_would_not_have_been_met) {
             CHECK_EQ_INT(world_nearest_crossing(&s.world, &passing, &scratch, &b, &y), met);
             CHECK(!met || (a == b && x.t == y.t && (a != hit.primitive || (skip.part && x.part != hit.part))));
             CHECK_EQ_INT(world_any(&s.world, &passing, &scratch), met);
+            CHECK_EQ_INT(world_nearest_crossing(&device, &passing, &scratch, &b, &y), met);
+            CHECK(!met || (a == b && x.t == y.t && x.part == y.part));
+            CHECK_EQ_INT(world_any(&device, &passing, &scratch), met);
             struct vec3 edge = vec3_scale(hit.normal_geometric, 1e-3);
             struct occluder_candidates occluder_candidates =
                 world_occluder_candidates(&s.world, onward.origin, vec3_add(onward.origin, direction), edge, edge,
@@ -295,6 +309,7 @@ TEST(the_primitive_that_a_ray_skips_would_not_have_been_met) {
                          !world_any(&s.world, &segment, &scratch));
         }
         world_scratch_destroy(&scratch);
+        device_search_destroy(&search);
         stage_end(&s);
         shape_makers_destroy(&makers);
     }
@@ -352,7 +367,7 @@ static void compare_group(const struct world *world, const struct world *single,
         bool met = world_nearest(single, &ray, scratch, &a);
         CHECK_EQ_INT(world_nearest(world, &ray, scratch, &b), met);
         CHECK_EQ_INT(world_any(world, &ray, scratch), met);
-        CHECK_EQ_INT(world_blocker(scratch) != WORLD_NOTHING, met);
+        CHECK(world->device || (world_blocker(scratch) != WORLD_NOTHING) == met);
         if (!met)
             return;
         CHECK(same_hit(&a, &b));
@@ -383,6 +398,9 @@ TEST(small_meshes_that_are_searched_together_have_the_hits_of_each) {
         CHECK(s.world.group.index != NULL);
         struct world single = s.world;
         single.group.index = NULL;
+        struct device_search search;
+        CHECK(device_search_build(&search, &s.world, s.pool, &s.error));
+        const struct world device = device_search_world(&search, &s.world);
         struct world_scratch scratch;
         CHECK(world_scratch_init(&scratch, &s.world));
         for (int i = 0; i < 2000; i++) {
@@ -392,9 +410,10 @@ TEST(small_meshes_that_are_searched_together_have_the_hits_of_each) {
             ray.footprint = (struct footprint){0.01, 0.001};
             if (i % 7 == 6)
                 ray.t_min = 0.5;
-            compare_group(&s.world, &single, &scratch, ray, &random, &hits);
+            compare_group(i % 2 ? &s.world : &device, &single, &scratch, ray, &random, &hits);
         }
         world_scratch_destroy(&scratch);
+        device_search_destroy(&search);
         stage_end(&s);
         for (int i = 0; i < SMALL_MESHES; i++)
             mesh_release(meshes[i]);
@@ -478,6 +497,9 @@ TEST(rays_that_are_not_finite_meet_only_what_is_there) {
         stage_begin(&s, 1);
         static const int counts[] = {2, 5, 30};
         CHECK(stage_build(&s, random_world(&s, &makers, &random, counts[w % 3], 10, false), (enum accel_kind)(w / 3)));
+        struct device_search search;
+        CHECK(device_search_build(&search, &s.world, s.pool, &s.error));
+        const struct world device = device_search_world(&search, &s.world);
         struct world_scratch scratch;
         CHECK(world_scratch_init(&scratch, &s.world));
         for (int i = 0; i < 3000; i++) {
@@ -491,8 +513,12 @@ TEST(rays_that_are_not_finite_meet_only_what_is_there) {
             CHECK(!world_nearest_crossing(&s.world, &ray, &scratch, &primitive, &c) ||
                   primitive < s.world.primitive_count);
             (void)world_any(&s.world, &ray, &scratch);
+            CHECK(!world_nearest_crossing(&device, &ray, &scratch, &primitive, &c) ||
+                  primitive < s.world.primitive_count);
+            (void)world_any(&device, &ray, &scratch);
         }
         world_scratch_destroy(&scratch);
+        device_search_destroy(&search);
         stage_end(&s);
         shape_makers_destroy(&makers);
     }
