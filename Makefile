@@ -175,7 +175,7 @@ $(BUILD)/tests/run: $(OBJECTS) $(TEST_OBJECTS)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
 # Benchmarks that are programs of their own.
-$(BUILD)/bench/formats $(BUILD)/bench/shapes $(BUILD)/bench/area_lights $(BUILD)/bench/expr: $(BUILD)/bench/%: $(BUILD)/bench/%.o $(OBJECTS)
+$(BUILD)/bench/formats $(BUILD)/bench/shapes $(BUILD)/bench/area_lights $(BUILD)/bench/expr $(BUILD)/bench/moving: $(BUILD)/bench/%: $(BUILD)/bench/%.o $(OBJECTS)
 	$(call say,LINK,$@)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 

@@ -6,6 +6,7 @@
 #include "device/kernels_file.h"
 #include "device/wave_internal.h"
 #include "film/film.h"
+#include "render/path_view.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -28,8 +29,8 @@ static const double memory_share = 0.8, longest_launch = 0.025, shortest_launch 
 #define KERNELS(X)                                                                                                     \
     X(LANES, "lanes")                                                                                                  \
     X(ARITHMETIC, "arithmetic")                                                                                        \
-    X(BEGIN, "begin") X(EXTEND, "extend") X(SORT, "sort") X(SHADE, "shade") X(SHADOW, "shadow") X(ADD, "add")          \
-        X(FINISH, "finish")
+    X(BEGIN, "begin")                                                                                                  \
+    X(EXTEND, "extend") X(SORT, "sort") X(SHADE, "shade") X(SHADOW, "shadow") X(ADD, "add") X(FINISH, "finish")
 #define KERNEL_MEMBER(member, name) KERNEL_##member,
 #define KERNEL_NAME(member, name) "kernel_" name,
 enum kernel { KERNELS(KERNEL_MEMBER) KERNEL_COUNT };
@@ -52,6 +53,7 @@ struct cuda {
     /* Of the scene. */
     const struct path_scene *scene;
     uint64_t scene_on_card, scene_block;
+    struct path_scene *root;         /* with the addresses of the card */
     uint32_t crossings, room, lanes; /* paths and lanes of a stream */
     _Atomic uint32_t limit;          /* paths of a wave, by the measured time of launches */
     _Atomic uint64_t launches;
@@ -134,6 +136,7 @@ void cuda_destroy(struct cuda *cuda) {
     if (cuda->context) /* with all that it has */
         (void)cuda->calls->context_destroy(cuda->context);
     (void)pthread_mutex_destroy(&cuda->mutex);
+    mem_free(cuda->root);
     mem_free(cuda);
 }
 
@@ -276,10 +279,13 @@ bool cuda_open_scene(struct cuda *cuda, void *bytes, size_t size, const struct p
     cuda->crossings = path_scene_crossings(scene);
     if (!CALL(cuda, error, context_use, cuda->context) || !CALL(cuda, error, take, &cuda->scene_block, size))
         return false;
-    const char *root = bundle_open(bytes, size, cuda->scene_block, path_scene_size(), error);
+    char *root = bundle_open(bytes, size, cuda->scene_block, path_scene_size(), error);
     if (!root)
         return false;
     cuda->scene_on_card = cuda->scene_block + (uint64_t)(root - (const char *)bytes);
+    if (!(cuda->root = mem_alloc(path_scene_size())))
+        return error_no_memory(error, "the scene for a card");
+    memcpy(cuda->root, root, path_scene_size());
     if (!CALL(cuda, error, upload, cuda->scene_block, bytes, size, NULL) || !CALL(cuda, error, stream_wait, NULL) ||
         !CALL(cuda, error, memory, &idle, &all) || !divide_memory(cuda, idle, error) || !try_arithmetic(cuda, error) ||
         !try_samples(cuda, here, error) || (cuda->measures && !measure(cuda, error)))
@@ -292,6 +298,23 @@ bool cuda_open_scene(struct cuda *cuda, void *bytes, size_t size, const struct p
         cuda->room * path_bytes(cuda) + cuda->lanes * path_lane_size(cuda->crossings) + PIXEL_BYTES + ORDER_BYTES;
     statistics->bytes = size + CUDA_STREAMS * stream;
     return true;
+}
+
+static void note_loss(struct cuda *cuda, const struct error *error) {
+    (void)pthread_mutex_lock(&cuda->mutex);
+    if (!atomic_load(&cuda->is_lost))
+        (void)snprintf(cuda->reason, sizeof cuda->reason, "%.*s", (int)sizeof cuda->reason - 1, error->text);
+    atomic_store(&cuda->is_lost, true);
+    (void)pthread_mutex_unlock(&cuda->mutex);
+}
+
+void cuda_set_view(struct cuda *cuda, const struct path_view *view) {
+    struct error error;
+    path_view_set(cuda->root, view, cuda->scene_on_card);
+    if (!CALL(cuda, &error, context_use, cuda->context) ||
+        !CALL(cuda, &error, upload, cuda->scene_on_card, cuda->root, path_scene_size(), NULL) ||
+        !CALL(cuda, &error, stream_wait, NULL))
+        note_loss(cuda, &error);
 }
 
 struct device_statistics cuda_statistics(struct cuda *cuda) {
@@ -380,11 +403,7 @@ static bool make(void *context, const struct path_orders *orders, struct path_co
         return true;
     if (!run_orders(cuda, stream, orders, counts, &error)) {
         wave_leave_pixels(orders);
-        (void)pthread_mutex_lock(&cuda->mutex);
-        if (!atomic_load(&cuda->is_lost))
-            (void)snprintf(cuda->reason, sizeof cuda->reason, "%.*s", (int)sizeof cuda->reason - 1, error.text);
-        atomic_store(&cuda->is_lost, true);
-        (void)pthread_mutex_unlock(&cuda->mutex);
+        note_loss(cuda, &error);
     }
     atomic_store(&stream->taken, false);
     return true;

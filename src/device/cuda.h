@@ -23,6 +23,8 @@ bool cuda_open_scene(struct cuda *cuda, void *bytes, size_t size, const struct p
 /* So many threads may use it at a time: while one ends its last paths, the others fill the card. What more threads
  * want is left. */
 enum { CUDA_STREAMS = 4 };
+/* Orders that follow are for this view, which fits the scene, and none is in work. */
+void cuda_set_view(struct cuda *cuda, const struct path_view *view);
 /* Its orders; `begin` is NULL. It may be used until the end of cuda. */
 struct path_device cuda_device(struct cuda *cuda);
 /* Until now. */

@@ -4,7 +4,9 @@
 #include "device/cuda.h"
 #include "device/emulation.h"
 #include "film/film.h"
+#include "render/path_view.h"
 
+#include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
@@ -15,6 +17,7 @@ enum slot_state { SLOT_FREE, SLOT_TAKEN, SLOT_ASKED, SLOT_WORKED, SLOT_MADE, SLO
 
 struct slot {
     _Atomic uint32_t state;
+    uint32_t view;  /* number of that of the orders; 0: that of the bundle */
     uint32_t count; /* orders */
     struct path_order orders[PATH_ORDERS];
     struct path_counts counts;
@@ -29,11 +32,14 @@ struct device_link {
     char reason[DEVICE_REASON];
     struct device_statistics statistics; /* but for these: */
     _Atomic uint64_t launches;
+    _Atomic uint32_t view_number; /* it is stored before the view is written */
+    struct path_view view;
     struct slot slots[];
 };
 
 /* A request to stop is noticed so soon, in seconds. */
 static const double patience = 0.01;
+static const char damaged_view[] = "the data of a view is damaged";
 
 size_t device_link_size(uint32_t slots) {
     return sizeof(struct device_link) + slots * sizeof(struct slot);
@@ -50,6 +56,11 @@ void device_link_close(struct device_link *link) {
 bool device_link_was_ready(struct device_link *link) {
     const uint32_t state = atomic_load(&link->state);
     return state == LINK_READY || state == LINK_ENDED;
+}
+
+bool device_link_is_closed(struct device_link *link) {
+    const uint32_t state = atomic_load(&link->state);
+    return state != LINK_STARTS && state != LINK_READY;
 }
 
 void device_link_refuse(struct device_link *link, const char *why) {
@@ -79,12 +90,55 @@ struct device_statistics device_link_statistics(struct device_link *link) {
 
 /* --- the device process --- */
 
+/* The view of the device; orders in work hold the lock. */
+struct service_view {
+    pthread_rwlock_t lock;
+    uint32_t number;
+    bool is_damaged;
+};
+
 struct service {
     struct device_link *link;
     uint32_t slots;
     struct cuda *cuda; /* or NULL */
     struct path_device device;
+    struct emulation *emulation;
+    struct service_view *view;
 };
+
+/* Takes the view of the memory if it has that number, once no order is in work. It is copied, as orders are. */
+static void take_view(const struct service *service, uint32_t number) {
+    struct device_link *link = service->link;
+    struct service_view *own = service->view;
+    struct path_view view;
+    (void)pthread_rwlock_wrlock(&own->lock);
+    memcpy(&view, &link->view, sizeof view);
+    if (own->number != number && atomic_load(&link->view_number) == number && !own->is_damaged) {
+        if (emulation_set_view(service->emulation, &view)) {
+            own->number = number;
+            if (service->cuda)
+                cuda_set_view(service->cuda, &view);
+        } else {
+            own->is_damaged = true;
+            device_link_refuse(link, damaged_view);
+        }
+    }
+    (void)pthread_rwlock_unlock(&own->lock);
+}
+
+/* False: the order is of a view that is not the newest one. True: the caller unlocks the view after the order. */
+static bool lock_view(const struct service *service, uint32_t number) {
+    struct service_view *own = service->view;
+    for (int tries = 0; tries < 2; tries++) {
+        (void)pthread_rwlock_rdlock(&own->lock);
+        if (own->number == number)
+            return true;
+        (void)pthread_rwlock_unlock(&own->lock);
+        if (tries == 0)
+            take_view(service, number);
+    }
+    return false;
+}
 
 static bool order_fits(const struct path_order *order) {
     return order->x0 < order->x1 && order->x1 - order->x0 <= FILM_TILE && order->y0 < order->y1 &&
@@ -112,8 +166,10 @@ static bool make_any(const struct service *service) {
         struct path_order copy[PATH_ORDERS];
         struct path_orders orders = {.all = copy, .pixels = slot->pixels};
         slot->counts = (struct path_counts){0};
-        if (copy_orders(slot, copy, &orders.count))
+        if (copy_orders(slot, copy, &orders.count) && lock_view(service, slot->view)) {
             (void)service->device.make(service->device.context, &orders, &slot->counts);
+            (void)pthread_rwlock_unlock(&service->view->lock);
+        }
         if (service->cuda)
             atomic_store(&service->link->launches, cuda_statistics(service->cuda).launches);
         if (!atomic_compare_exchange_strong(&slot->state, &worked, SLOT_MADE))
@@ -158,14 +214,19 @@ bool device_link_serve(struct device_link *link, struct cuda *cuda, void *scene,
     if (!emulation)
         (void)error_no_memory(error, "the scene for a device");
     if (ok) {
-        struct service service = {link, slots, cuda, cuda ? cuda_device(cuda) : emulation_device(emulation)};
+        struct service_view view = {.number = 0};
+        struct service service = {link,      slots, cuda, cuda ? cuda_device(cuda) : emulation_device(emulation),
+                                  emulation, &view};
         uint32_t starts = LINK_STARTS;
         link->statistics = cuda ? cuda_statistics(cuda) : (struct device_statistics){.name = "emulation"};
+        (void)pthread_rwlock_init(&view.lock, NULL);
         (void)atomic_compare_exchange_strong(&link->state, &starts, LINK_READY);
         pool_signal(&link->answered);
         (void)pool_run(pool, (uint32_t)pool_workers(pool), serve, &service);
         const char *lost = cuda ? cuda_lost(cuda) : NULL;
+        lost = view.is_damaged ? damaged_view : lost;
         ok = !lost || error_set(error, ERROR_MACHINE, "%s", lost);
+        (void)pthread_rwlock_destroy(&view.lock);
     }
     emulation_destroy(emulation);
     if (pool)
@@ -180,6 +241,15 @@ bool device_client_wait(const struct device_client *client) {
     while (atomic_load(&link->state) == LINK_STARTS && !pool_cancelled(client->pool))
         pool_wait(&link->answered, atomic_load(&link->answered.signals), patience);
     return atomic_load(&link->state) == LINK_READY;
+}
+
+bool device_client_is_ready(const struct device_client *client) {
+    return atomic_load(&client->link->state) == LINK_READY;
+}
+
+void device_client_set_view(struct device_client *client, const struct path_view *view) {
+    atomic_store(&client->link->view_number, ++client->view);
+    client->link->view = *view;
 }
 
 /* There are as many slots as workers, but some may be left with an order of a render that was stopped. */
@@ -197,12 +267,21 @@ static struct slot *take_slot(const struct device_client *client) {
     return NULL;
 }
 
+/* The device frees it if it is at work. */
+static void leave_slot(struct slot *slot) {
+    uint32_t asked = SLOT_ASKED, worked = SLOT_WORKED;
+    if (!atomic_compare_exchange_strong(&slot->state, &asked, SLOT_FREE) &&
+        !atomic_compare_exchange_strong(&slot->state, &worked, SLOT_LEFT))
+        atomic_store(&slot->state, SLOT_FREE);
+}
+
 bool device_client_make(struct device_client *client, const struct path_orders *orders, struct path_counts *counts) {
     struct device_link *link = client->link;
     const size_t size = (size_t)path_orders_pixels(orders) * sizeof *orders->pixels;
     struct slot *slot = take_slot(client);
     if (!slot)
         return !pool_cancelled(client->pool);
+    slot->view = client->view;
     slot->count = orders->count;
     memcpy(slot->orders, orders->all, orders->count * sizeof *orders->all);
     memcpy(slot->pixels, orders->pixels, size);
@@ -215,7 +294,7 @@ bool device_client_make(struct device_client *client, const struct path_orders *
             break;
         bool cancelled = pool_cancelled(client->pool);
         if (cancelled || atomic_load(&link->state) != LINK_READY) {
-            atomic_store(&slot->state, SLOT_LEFT);
+            leave_slot(slot);
             return !cancelled;
         }
         pool_wait(&link->answered, seen, patience);

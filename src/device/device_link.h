@@ -15,13 +15,14 @@ size_t device_link_size(uint32_t slots);
 void device_link_close(struct device_link *link);
 
 /* The device process: opens the bundle of a scene and makes orders until the link is closed, with a thread for each
- * stream of the card, or for each slot. cuda: the card; NULL: the emulation. False: the bundle is damaged, no memory,
- * or the card was lost; what is not made then, threads make. */
+ * stream of the card, or for each slot. cuda: the card; NULL: the emulation. False: the bundle or a view is damaged, no
+ * memory, or the card was lost; what is not made then, threads make. */
 struct cuda;
 bool device_link_serve(struct device_link *link, struct cuda *cuda, void *scene, size_t size, uint32_t slots,
                        struct error *error);
 /* Whether it has begun to make orders. */
 bool device_link_was_ready(struct device_link *link);
+bool device_link_is_closed(struct device_link *link);
 /* Instead: it cannot begin, for this reason, or cannot go on. */
 void device_link_refuse(struct device_link *link, const char *why);
 /* The reason; "": none was given. Control characters are dots, here and in names. */
@@ -35,7 +36,12 @@ struct device_client {
     struct device_link *link;
     const struct pool *pool;
     uint32_t slots;
+    uint32_t view; /* the number of the last one; 0: that of the bundle */
 };
+bool device_client_is_ready(const struct device_client *client);
+/* Orders that follow are for this view (render/path_view.h), and the caller waits for none. */
+struct path_view;
+void device_client_set_view(struct device_client *client, const struct path_view *view);
 /* Waits until the device is ready. False: it is not; the link is closed. */
 bool device_client_wait(const struct device_client *client);
 /* Its `make`, of struct path_device. */

@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "base/unreachable.h"
 #include "device/wave_internal.h"
+#include "render/path_view.h"
 
 #include <math.h>
 
@@ -12,7 +13,7 @@ struct emulation {
     const struct pool *pool;
     uint32_t wave, crossings;
     void *bytes; /* the opened bundle */
-    const struct path_scene *scene;
+    struct path_scene *scene;
 };
 
 struct emulation *emulation_create(const struct pool *pool, uint32_t wave, uint32_t crossings) {
@@ -35,6 +36,13 @@ bool emulation_open(struct emulation *emulation, void *bytes, size_t size, struc
 
 const struct path_scene *emulation_scene(const struct emulation *emulation) {
     return emulation->scene;
+}
+
+bool emulation_set_view(struct emulation *emulation, const struct path_view *view) {
+    if (!path_view_fits(emulation->scene, view))
+        return false;
+    path_view_set(emulation->scene, view, (uint64_t)(uintptr_t)emulation->scene);
+    return true;
 }
 
 static bool begin(void *context, struct bundle *scene, bool *is_used, struct error *error) {

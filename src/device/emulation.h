@@ -14,6 +14,8 @@ void emulation_destroy(struct emulation *emulation);
 bool emulation_open(struct emulation *emulation, void *bytes, size_t size, struct error *error);
 /* The opened scene. Both may be used until the emulation is destroyed. */
 const struct path_scene *emulation_scene(const struct emulation *emulation);
+/* Orders that follow are for this view, and none is in work. False: it does not fit the scene (path_view_fits). */
+bool emulation_set_view(struct emulation *emulation, const struct path_view *view);
 struct path_device emulation_device(struct emulation *emulation);
 
 #endif

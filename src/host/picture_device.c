@@ -32,6 +32,8 @@ static bool is_worth(void *context, const struct path_estimate *threads) {
     struct picture_device *device = context;
     char reason[80];
     device->threads = *threads;
+    if (device->in_window) /* it has many pictures */
+        return true;
     if (threads->samples >= shortest_work * threads->rate)
         return true;
     (void)snprintf(reason, sizeof reason, "it needs about %.1f s", threads->samples / threads->rate);
@@ -62,11 +64,15 @@ static bool begin(void *context, struct bundle *scene, bool *is_used, struct err
     struct picture_device *device = context;
     const struct host_services *services = device->services;
     const uint32_t slots = waiting_threads(device);
+    device->has_begun = true;
     if (!services->device)
         return begin_here(device, scene, is_used, error);
     if (!services->device(services->context, scene, slots, &device->memory, error))
         return false;
-    device->client = (struct device_client){device->memory.block, device->pool, slots};
+    device->client = (struct device_client){device->memory.block, device->pool, slots, 0};
+    *is_used = true;
+    if (device->in_window)
+        return true;
     const bool is_ready = device_client_wait(&device->client);
     *is_used = is_ready && (device->kind != DEVICE_AUTO || is_quicker(device));
     if (is_ready || device->kind == DEVICE_EMULATE || pool_cancelled(device->pool))
@@ -74,6 +80,75 @@ static bool begin(void *context, struct bundle *scene, bool *is_used, struct err
     char reason[DEVICE_REASON];
     device_link_reason(device->memory.block, reason);
     return go_without(device, reason[0] ? reason : "the device process is gone", error);
+}
+
+/* --- in a window --- */
+
+/* Whether it makes orders now. The window does not wait for a card. */
+static bool is_ready(struct picture_device *device) {
+    if (device->kind == DEVICE_EMULATE)
+        (void)device_client_wait(&device->client);
+    const bool ready = device_client_is_ready(&device->client);
+    if (ready && !device->was_ready && device->kind == DEVICE_AUTO)
+        (void)is_quicker(device);
+    device->was_ready = device->was_ready || ready;
+    return device_client_is_ready(&device->client);
+}
+
+/* Once; what is lost later, the supervisor reports. */
+static void report_refusal(struct picture_device *device) {
+    char reason[DEVICE_REASON], line[DEVICE_REASON + 64];
+    device->is_left = true;
+    device_link_reason(device->memory.block, reason);
+    if (device->was_ready || device->kind == DEVICE_EMULATE)
+        return;
+    device->is_absent = true;
+    (void)snprintf(line, sizeof line, "gray: %sthe processor renders: %s",
+                   device->kind == DEVICE_GPU ? "warning: " : "", reason[0] ? reason : "the device process is gone");
+    device->services->line(device->services->context, device->kind == DEVICE_GPU ? LINE_WARNING : LINE_DETAIL, line);
+}
+
+static enum path_device_answer take_view(void *context, const struct path_view *view) {
+    struct picture_device *device = context;
+    if (device->is_absent)
+        return PATH_DEVICE_LEAVES;
+    if (!device->has_begun || !path_view_follows(&device->first, view)) {
+        picture_device_forget(device);
+        device->first = *view;
+        return PATH_DEVICE_BEGINS;
+    }
+    if (device->emulation)
+        return emulation_set_view(device->emulation, view) ? PATH_DEVICE_TAKES : PATH_DEVICE_LEAVES;
+    if (!device->memory.block || device->is_left)
+        return PATH_DEVICE_LEAVES;
+    if (is_ready(device)) {
+        device_client_set_view(&device->client, view);
+        return PATH_DEVICE_TAKES;
+    }
+    if (device_link_is_closed(device->memory.block))
+        report_refusal(device);
+    return PATH_DEVICE_LEAVES;
+}
+
+bool picture_device_walks(const struct picture_device *device, uint64_t pixels) {
+    static const double slowest = 10; /* pictures a second */
+    if (device->emulation)
+        return true;
+    if (!device->memory.block || device->is_left || !device_client_is_ready(&device->client))
+        return false;
+    return device->kind != DEVICE_AUTO || device_link_statistics(device->memory.block).rate >= slowest * (double)pixels;
+}
+
+void picture_device_forget(struct picture_device *device) {
+    if (device->memory.block)
+        device_link_close(device->memory.block);
+    picture_device_end(device);
+    *device = (struct picture_device){.services = device->services,
+                                      .pool = device->pool,
+                                      .kind = device->kind,
+                                      .in_window = device->in_window,
+                                      .is_absent = device->is_absent,
+                                      .was_reported = device->was_reported};
 }
 
 static bool make(void *context, const struct path_orders *orders, struct path_counts *counts) {
@@ -84,19 +159,32 @@ static bool make(void *context, const struct path_orders *orders, struct path_co
     return here.make(here.context, orders, counts);
 }
 
-static void leave(void *context, const char *what) {
-    const struct picture_device *device = context;
+/* A window goes on with the threads. */
+static bool leave(void *context, const char *what, struct error *error) {
+    struct picture_device *device = context;
+    const bool is_wanted = device->kind == DEVICE_GPU;
     char line[256];
-    (void)snprintf(line, sizeof line, "gray: the processor renders: a device has no %s", what);
-    device->services->line(device->services->context, LINE_DETAIL, line);
+    if (is_wanted && !device->in_window)
+        return error_set(error, ERROR_SCENE, "--device gpu: a device has no %s", what);
+    if (device->was_reported)
+        return true;
+    device->was_reported = device->in_window;
+    (void)snprintf(line, sizeof line, "gray: %sthe processor renders: a device has no %s", is_wanted ? "warning: " : "",
+                   what);
+    device->services->line(device->services->context, is_wanted ? LINE_WARNING : LINE_DETAIL, line);
+    return true;
 }
 
-struct path_device picture_device_maker(struct picture_device *device, enum integrator_kind integrator) {
-    if (integrator != INTEGRATOR_PATH)
-        leave(device, "integrator but path");
-    return (struct path_device){leave,  device->kind == DEVICE_AUTO ? is_worth : NULL,
-                                begin,  make,
-                                device, device->kind == DEVICE_EMULATE ? 0 : waiting_threads(device)};
+bool picture_device_init(struct picture_device *device, enum integrator_kind integrator, struct path_device *out,
+                         struct error *error) {
+    *out = (struct path_device){.leave = leave,
+                                .is_worth = device->kind == DEVICE_AUTO ? is_worth : NULL,
+                                .take_view = device->in_window ? take_view : NULL,
+                                .begin = begin,
+                                .make = make,
+                                .context = device,
+                                .waiting = device->kind == DEVICE_EMULATE ? 0 : waiting_threads(device)};
+    return integrator == INTEGRATOR_PATH || leave(device, "integrator but path", error);
 }
 
 void picture_device_end(struct picture_device *device) {

@@ -5,22 +5,33 @@
 
 #include "base/share.h"
 #include "device/device_link.h"
+#include "render/path_view.h"
 #include "session/options.h"
 #include "session/services.h"
 
 struct emulation;
-/* Zero but for the first three fields. Owner: the caller, picture_device_end. */
+/* Zero but for the first four fields. Owner: the caller, picture_device_end. */
 struct picture_device {
     const struct host_services *services;
     struct pool *pool;
     enum device kind;
+    bool in_window; /* it makes one picture after the other, until picture_device_forget */
     struct emulation *emulation;
     struct share memory;
     struct device_client client;
     struct path_estimate threads; /* with DEVICE_AUTO */
+    /* In a window. */
+    bool has_begun, was_ready, is_left; /* left: threads make all pictures of this world ... */
+    bool is_absent, was_reported;       /* ... and of all others; `leave` was called */
+    struct path_view first;             /* of the bundle */
 };
-/* It may be used until picture_device_end. */
-struct path_device picture_device_maker(struct picture_device *device, enum integrator_kind integrator);
+/* *out may be used until picture_device_end. False: with `gpu`, an integrator that devices do not have. */
+bool picture_device_init(struct picture_device *device, enum integrator_kind integrator, struct path_device *out,
+                         struct error *error);
 void picture_device_end(struct picture_device *device);
+/* In a window: the world is another one, or there is none. */
+void picture_device_forget(struct picture_device *device);
+/* Whether it is there, and quick enough for one picture after the other while the camera moves. */
+bool picture_device_walks(const struct picture_device *device, uint64_t pixels);
 
 #endif

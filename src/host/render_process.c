@@ -12,6 +12,7 @@
 #include "formats/model.h"
 #include "host/model_export.h"
 #include "host/picture_device.h"
+#include "host/picture_in_window_internal.h"
 #include "host/render_reports.h"
 #include "host/scene_text.h"
 #include "inspect/inspect.h"
@@ -153,8 +154,7 @@ struct world_input render_process_world_input(const struct picture_work *work) {
                                 .warn_context = work->process};
 }
 
-/* changed: by a window, or NULL. */
-static bool build_world(struct picture_work *work, const struct changed_scene *changed, struct error *error) {
+bool render_process_build_world(struct picture_work *work, const struct changed_scene *changed, struct error *error) {
     struct render_process *process = work->process;
     struct control *control = process->services->control;
     if (!notes_changes(work))
@@ -177,41 +177,6 @@ static bool build_world(struct picture_work *work, const struct changed_scene *c
     return ok;
 }
 
-/* A picture in a window. */
-
-static bool preview_build(void *context, const struct changed_scene *changed, struct error *error) {
-    struct picture_work *work = context;
-    world_destroy(&work->world);
-    work->process->radiosity.patches.world = NULL;
-    arena_reset(&work->process->job);
-    return build_world(work, changed, error);
-}
-
-static void preview_fill_report(void *context, const struct film *film, struct picture_report *report) {
-    render_process_fill_report(context, film, report);
-}
-
-static void preview_warn(void *context, const char *text) {
-    const struct picture_work *work = context;
-    render_process_warn(work->process, text);
-}
-
-static bool make_in_window(struct picture_work *work, double build_seconds, struct error *error) {
-    bool built = work->job.world != NULL;
-    work->job.world = &work->world;
-    struct preview_session preview = {.services = work->process->services,
-                                      .pool = work->process->pool,
-                                      .request = work->request,
-                                      .picture_request = &work->picture_request,
-                                      .job = &work->job,
-                                      .world = &work->world,
-                                      .context = work,
-                                      .build = preview_build,
-                                      .fill = preview_fill_report,
-                                      .warn = preview_warn};
-    return preview_run(&preview, built, &work->report, build_seconds, error);
-}
-
 static bool too_much_memory(const struct render_process *process, struct error *error) {
     const struct script_options *options = &process->options->script;
     char size[SIZE_WORDS];
@@ -230,11 +195,12 @@ static bool render_picture(struct picture_work *work, struct error *error) {
     struct picture_device device = {
         .services = process->services, .pool = process->pool, .kind = (enum device)process->options->device};
     struct path_device maker;
+    bool ok = true;
     if (process->options->device != DEVICE_CPU) {
-        maker = picture_device_maker(&device, work->job.settings.integrator);
+        ok = picture_device_init(&device, work->job.settings.integrator, &maker, error);
         work->job.device = &maker;
     }
-    bool ok = render_run(&work->job, process->pool, &work->report.rays, error);
+    ok = ok && render_run(&work->job, process->pool, &work->report.rays, error);
     work->job.device = NULL;
     picture_device_end(&device);
     return ok && overlay_draw(&work->job, process->pool, error);
@@ -247,7 +213,7 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
     struct picture_report *report = &work->report;
     bool in_window = work->picture_request.in_window;
     double begun = clock_now(), worked = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
-    if (build_world(work, NULL, error))
+    if (render_process_build_world(work, NULL, error))
         job->world = &work->world;
     else if (!in_window || !preview_was_stopped(process->services->control, error))
         return false;
@@ -270,7 +236,7 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
     if (ok && !is_asked(process->options) && !process->options->check) {
         if (!in_window)
             atomic_store(&process->services->control->tiles, film_tile_count(job->film));
-        ok = in_window ? make_in_window(work, built - begun, error) : render_picture(work, error);
+        ok = in_window ? picture_in_window(work, built - begun, error) : render_picture(work, error);
     }
     report->rays.build_seconds = built - begun;
     report->rays.build_processor_seconds = built_worked - worked;

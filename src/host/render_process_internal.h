@@ -99,6 +99,9 @@ bool render_process_need_pool(struct render_process *process, struct error *erro
 struct mem_account *render_process_charge_picture(struct render_process *process);
 /* A piece of requested output, for struct text_writer. */
 void render_process_print(void *context, const char *text);
+/* Builds the world of the picture. changed: by a window, or NULL. */
+struct changed_scene;
+bool render_process_build_world(struct picture_work *work, const struct changed_scene *changed, struct error *error);
 /* For a world of the picture, without a cache. */
 struct world_input render_process_world_input(const struct picture_work *work);
 

@@ -142,6 +142,8 @@ static void talk_to_child(struct supervisor *supervisor) {
             supervisor->broken = true;
         if (supervisor->waits)
             return;
+        if (result == CHANNEL_MESSAGE && message.kind == MESSAGE_PREVIEW_REPLY) /* the child waits for a command */
+            supervisor_step_window(supervisor);
     }
     (void)kill(supervisor->child, SIGKILL);
 }

@@ -49,8 +49,7 @@ static _Noreturn void run_as_device(struct supervisor *supervisor, pid_t parent,
     bool ok = bytes && share_attach(&link, orders, device_link_size(slots), &error);
     if (is_confined)
         confine_descriptors(STDERR_FILENO);
-    ok = ok &&
-         (!is_card || (cuda = open_card(&calls, supervisor->options->device == DEVICE_AUTO, &error)) != NULL) &&
+    ok = ok && (!is_card || (cuda = open_card(&calls, supervisor->options->device == DEVICE_AUTO, &error)) != NULL) &&
          (!is_confined || confine_device(is_card, report, sizeof report, &error)) &&
          device_link_serve(link.block, cuda, bytes, size, slots, &error);
     if (!ok && link.block)

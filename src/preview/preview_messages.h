@@ -42,7 +42,8 @@ struct pass_view {
     struct camera camera;       /* its view a direction */
     double exposure;            /* stops: it decides which pixels are sampled again */
     uint32_t divide;            /* one pixel represents a square with this side; from 1 */
-    bool plain;                 /* one sample a pixel, coarse soft light */
+    bool plain;                 /* one sample a pixel, coarse soft light; or it walks: */
+    bool walks;                 /* one sample of the integrator for each pixel, by a device, not denoised */
     bool headlight;             /* plain, and made by render_headlight ... */
     enum headlight_shows shows; /* ... which shows this */
     uint32_t samples;        /* not 0: so many for each pixel, with integrators that are progressive, then denoised */
@@ -92,6 +93,7 @@ struct preview_reply {
     struct node_rows nodes; /* of NODES */
     struct light_info lights[LIGHTS_PER_MESSAGE];
     char text[512]; /* of CHANGED: why an edit failed, or empty */
+    bool walks;     /* passes that walk are quick enough now */
     bool unbuilt;   /* of CHANGED: the building of the world was stopped; the next pass starts it again */
 };
 

@@ -3,6 +3,7 @@
 #include "preview/preview_session.h"
 
 #include "base/clock.h"
+#include "film/path_film.h"
 #include "inspect/inspect.h"
 #include "inspect/pick.h"
 #include "light/light_edit.h"
@@ -34,12 +35,16 @@ static void set_pass(struct render_job *job, const struct render_job *own, const
     job->settings.tile_order = TILE_ORDER_CENTRE;
     job->settings.tone.exposure = view->exposure;
     job->settings.passes = (view->divide <= 1 && !view->plain) || view->samples > 0;
-    settings_set_draft(&job->settings, view->plain ? DRAFT_QUICK : DRAFT_NONE);
+    settings_set_draft(&job->settings, view->plain && !view->walks ? DRAFT_QUICK : DRAFT_NONE);
+    if (view->walks)
+        job->settings.passes = false;
+    if (view->plain && !view->walks)
+        job->device = NULL;
     if (!job->settings.passes || view->samples > 0) {
         job->settings.path_samples = view->samples > 0 ? (int)view->samples : 1;
         job->settings.noise = job->settings.time_limit = 0;
     }
-    if (view->samples > 0)
+    if (view->samples > 0 && path_film_parts(film->record) & PATH_PART_FEATURES) /* for passes that follow */
         job->settings.denoise = DENOISER_GRAY;
     job->kept_samples = view->kept;
     if (view->divide > 1 || view->width > 0) { /* the film determines the part */
@@ -213,6 +218,7 @@ static bool change_scene(struct preview_state *work, const struct preview_comman
         (void)snprintf(reply->text, sizeof reply->text, "there are too many changes");
         return true;
     }
+    preview->device.forget(preview->device.context);
     /* Changes are laid over the script's scene anew, so their order does not matter. */
     changes_remove(&work->changed);
     struct lost_edit lost = {.preview = preview};
@@ -355,6 +361,13 @@ static bool execute_command(struct preview_state *work, const struct preview_com
     return true;
 }
 
+static bool walks(const struct preview_state *work) {
+    const struct preview_session *preview = work->preview;
+    const struct film *film = preview->job->film;
+    return preview->job->device && !work->stale &&
+           preview->device.walks(preview->device.context, (uint64_t)film->width * film->height);
+}
+
 static bool serve(struct preview_state *work, struct picture_report *report, struct error *error) {
     struct preview_session *preview = work->preview;
     struct preview_reply reply = {.kind = REPLY_CHANGED, .report = *report, .unbuilt = work->stale};
@@ -364,6 +377,7 @@ static bool serve(struct preview_state *work, struct picture_report *report, str
     for (;;) {
         if (reply.kind == REPLY_BUILT)
             report->bounds = reply.report.bounds;
+        reply.walks = walks(work);
         if (!preview->services->reply(preview->services->context, &reply, &command, error))
             return false;
         if (command.kind == COMMAND_END)

@@ -16,6 +16,12 @@ struct preview_session {
     const struct picture_request *picture_request;
     struct render_job *job; /* as the script requests it; with the world to use */
     struct world *world;
+    /* The device of the job, if it has one. */
+    struct {
+        bool (*walks)(void *context, uint64_t pixels); /* it makes raw pictures while the camera moves */
+        void (*forget)(void *context);                 /* the world has changed */
+        void *context;
+    } device;
     void *context; /* of the functions below */
     /* Builds job->world again with the lights, and the sky, of the changes; NULL: of the script. False: there is no
      * world; building can be stopped like a pass. */

@@ -8,6 +8,7 @@
 #include "math/elementary.h"
 #include "render/integrator_internal.h"
 #include "render/path_noise_internal.h"
+#include "render/path_view_internal.h"
 #include "render/path_wave_internal.h"
 #include "render/sample_internal.h"
 #include "world/world_describe.h"
@@ -214,31 +215,54 @@ static struct path_estimate estimate(const struct path_tracer *tracer, struct re
                                   (double)atomic_load(&measured.samples) / (clock_now() - begun)};
 }
 
-/* If the job has a device, and it can render the scene, workers give their samples to it. */
-static bool begin_device(struct path_tracer *tracer, struct renderer *renderer, struct error *error) {
+/* Of devices that take views; others begin each picture. A view that is too large is left to threads. */
+static enum path_device_answer show_view(const struct renderer *renderer) {
     const struct path_device *device = renderer->job->device;
-    const char *lacks = device && !renderer->roams ? path_scene_lacks(tracer, renderer) : NULL;
-    if (lacks && device->leave)
-        device->leave(device->context, lacks);
-    if (!device || renderer->roams || lacks)
-        return true;
-    if (device->is_worth) {
-        const struct path_estimate threads = estimate(tracer, renderer);
-        if (!device->is_worth(device->context, &threads))
-            return true;
-    }
+    struct path_view view;
+    if (!device->take_view)
+        return PATH_DEVICE_BEGINS;
+    return path_view_make(renderer, &view) ? device->take_view(device->context, &view) : PATH_DEVICE_LEAVES;
+}
+
+/* *is_used false: threads make the picture. */
+static bool send_scene(const struct path_tracer *tracer, const struct renderer *renderer, bool *is_used,
+                       struct error *error) {
+    const struct path_device *device = renderer->job->device;
     struct device_search search;
     if (!device_search_build(&search, renderer->job->world, renderer->pool, error))
         return false;
     struct bundle *scene = path_scene_bundle(tracer, renderer, &search);
-    bool is_used = false;
-    bool ok = scene ? device->begin(device->context, scene, &is_used, error)
+    bool ok = scene ? device->begin(device->context, scene, is_used, error)
                     : error_no_memory(error, "the scene for a device");
     bundle_destroy(scene);
     device_search_destroy(&search);
+    return ok;
+}
+
+/* If the job has a device, and it can render the scene, workers give their samples to it. */
+static bool begin_device(struct path_tracer *tracer, struct renderer *renderer, struct error *error) {
+    const struct path_device *device = renderer->job->device;
+    const char *lacks = device && !renderer->roams ? path_scene_lacks(tracer, renderer) : NULL;
+    if (lacks && device->leave && !device->leave(device->context, lacks, error))
+        return false;
+    if (!device || renderer->roams || lacks)
+        return true;
+    enum path_device_answer answer = show_view(renderer);
+    if (answer == PATH_DEVICE_BEGINS && device->is_worth) {
+        const struct path_estimate threads = estimate(tracer, renderer);
+        if (!device->is_worth(device->context, &threads))
+            return true;
+    }
+    if (answer == PATH_DEVICE_BEGINS) {
+        bool is_used = false;
+        if (!send_scene(tracer, renderer, &is_used, error))
+            return false;
+        answer = is_used ? show_view(renderer) : PATH_DEVICE_LEAVES;
+    }
     /* The last workers wait for the device; if there are only those of the processor, these do. */
     const int first = device->waiting > 0 ? pool_workers(renderer->pool) : 0;
-    for (int i = first; ok && is_used && i < renderer->worker_count; i++) {
+    bool ok = true;
+    for (int i = first; ok && answer != PATH_DEVICE_LEAVES && i < renderer->worker_count; i++) {
         renderer->workers[i].for_device = mem_alloc_zero(1, sizeof *renderer->workers[i].for_device);
         ok = renderer->workers[i].for_device || error_no_memory(error, "the workers of a render");
     }

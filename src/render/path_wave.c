@@ -28,7 +28,7 @@ struct path_wave_result {
     struct colour light;
     double seen_through, weight; /* weight: of the filter */
     bool failed;
-    struct path_parts parts; /* with scene->has_parts */
+    struct path_parts parts; /* with scene->has_room */
 };
 _Static_assert(sizeof(struct path_wave_light) <= sizeof(struct path_wave_state), "they share memory");
 _Static_assert(2 * sizeof(struct path_wave_state) + offsetof(struct path_wave_result, parts) <= 1160,
@@ -46,7 +46,7 @@ size_t path_wave_state_size(void) {
 }
 
 size_t path_wave_result_size(const struct path_scene *scene) {
-    return scene->has_parts ? sizeof(struct path_wave_result) : offsetof(struct path_wave_result, parts);
+    return scene->has_room ? sizeof(struct path_wave_result) : offsetof(struct path_wave_result, parts);
 }
 
 uint32_t path_scene_crossings(const struct path_scene *scene) {
@@ -264,10 +264,16 @@ struct path_order path_scene_trial(const struct path_scene *scene, uint32_t side
                                0, samples};
 }
 
+bool path_scene_has_room(const struct renderer *renderer) {
+    return path_has_parts(&renderer->job->settings) ||
+           (path_film_parts(renderer->job->film->record) & PATH_PART_FEATURES) != 0;
+}
+
 struct bundle *path_scene_bundle(const struct path_tracer *tracer, const struct renderer *renderer,
                                  const struct device_search *search) {
     const struct world world = device_search_world(search, renderer->job->world);
     struct path_scene scene = {.tracer = *tracer, .has_parts = path_has_parts(&renderer->job->settings)};
+    scene.has_room = path_scene_has_room(renderer);
     scene.tracer.lights.world = &world;
     scene.job = (struct render_job){.world = &world,
                                     .camera = renderer->job->camera,

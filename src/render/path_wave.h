@@ -90,12 +90,22 @@ struct path_estimate {
     double samples, rate;
 };
 
+struct path_view;
+enum path_device_answer {
+    PATH_DEVICE_BEGINS, /* it has no scene, or the view is not one of it: `begin`, and once more */
+    PATH_DEVICE_TAKES,
+    PATH_DEVICE_LEAVES, /* threads make this picture */
+};
+
 /* Who makes the samples of rectangles in place of the threads of the render. */
 struct path_device {
-    /* Or NULL; in place of `begin`: the scene has something that devices do not have, in words. */
-    void (*leave)(void *context, const char *what);
+    /* Or NULL; in place of `begin`: the scene has something that devices do not have, in words. Errors end the render.
+     */
+    bool (*leave)(void *context, const char *what, struct error *error);
     /* Or NULL; before `begin`, with the estimate of a trial. False: threads make the picture. */
     bool (*is_worth)(void *context, const struct path_estimate *threads);
+    /* Or NULL; before all but `leave`: the orders that follow are for this view (path_view.h). */
+    enum path_device_answer (*take_view)(void *context, const struct path_view *view);
     /* Before the first order. *is_used false: threads make the picture. Errors end the render. */
     bool (*begin)(void *context, struct bundle *scene, bool *is_used, struct error *error);
     /* Where a pixel has not all samples of its order afterwards, the thread makes them. Adds to `counts`. Called from

@@ -57,8 +57,10 @@ static void close_window(struct viewer *viewer) {
     mem_free(viewer->window.image);
     mem_free(viewer->window.light);
     mem_free(viewer->window.drawn);
+    mem_free(viewer->window.tones);
     viewer_destroy_overlay(viewer);
     viewer_destroy_large(viewer);
+    viewer->window.tones = NULL;
     viewer->window.image = viewer->window.drawn = NULL;
     viewer->window.light = NULL;
     viewer->window.layout = (struct window_layout){0};
@@ -75,7 +77,8 @@ static bool make_images(struct viewer *viewer, struct error *error) {
     viewer->window.image = mem_alloc_zero(pixels, 3);
     viewer->window.light = mem_alloc_zero(pixels, 3 * sizeof(float));
     viewer->window.drawn = mem_alloc_zero(viewer->display.tiles, 1);
-    bool ok = viewer->window.image && viewer->window.light && viewer->window.drawn;
+    viewer->window.tones = viewer->window.tones ? viewer->window.tones : mem_alloc_zero(1, sizeof(struct tone_lookup));
+    bool ok = viewer->window.tones && viewer->window.image && viewer->window.light && viewer->window.drawn;
     return ok || error_no_memory(error, "the window");
 }
 
@@ -270,7 +273,11 @@ static void note_motion(struct viewer *viewer, double now) {
             "%.40s: %u pictures in %.2f s, at 1/%u, the first after %.0f ms, all pixels %.0f ms after the last",
             viewer->request.file, motion->pictures, motion->last - motion->began, motion->divide,
             1000 * (motion->first_shown - motion->began), 1000 * (now - motion->last));
-    if (view->headlight)
+    if (view->walks && viewer->pass.began >= motion->last)
+        (void)snprintf(viewer->note, sizeof viewer->note,
+                       "%.40s: %u pictures of the integrator in %.2f s, the first after %.0f ms", viewer->request.file,
+                       motion->pictures, motion->last - motion->began, 1000 * (motion->first_shown - motion->began));
+    if (view->headlight || view->walks)
         return;
     (void)snprintf(viewer->note, sizeof viewer->note, "%.40s: the integrator after %.0f ms, at 1/%u",
                    viewer->request.file, 1000 * (now - motion->last), view->divide);
@@ -279,7 +286,7 @@ static void note_motion(struct viewer *viewer, double now) {
 
 void viewer_fit_resolution(struct viewer *viewer, double now, double seconds, double limit) {
     uint32_t divide = viewer->pass.divide;
-    if (!viewer->pass.view.plain || viewer->pass.view.divide != divide)
+    if (!viewer->pass.view.plain || viewer->pass.view.walks || viewer->pass.view.divide != divide)
         return;
     double side = divide * sqrt(now - viewer->pass.began);
     double needed = math_min(math_max(math_min(side / sqrt(seconds), MIDDLE_DIVIDE), side / sqrt(limit)), 1.5 * divide);
@@ -322,6 +329,7 @@ void viewer_receive_reply(struct viewer *viewer, const struct preview_reply *rep
     viewer->pass.state = PASS_WAITING;
     viewer->display.hud_dirty = true;
     viewer->pass.unbuilt = reply->unbuilt;
+    viewer->pass.walks = reply->walks;
     /* The reply is to the last command; what it shows is drawn at the next step. */
     switch (reply->kind) {
     case REPLY_BUILT:
@@ -460,17 +468,29 @@ static void command_overlay(struct viewer *viewer) {
                                                .overlay = viewer_overlay_request(viewer, false)};
 }
 
+/* While the camera moves, a device makes one sample for each pixel. */
+static void begin_walking_pass(struct viewer *viewer, double now) {
+    begin_pass(viewer, 1, true, false, now);
+    viewer->pass.view.headlight = false;
+    viewer->pass.view.walks = true;
+    viewer->pass.view.samples = 1;
+    viewer->command.view = viewer->pass.view;
+}
+
 /* Between the preview and the picture of a progressive integrator: denoised pictures, of 2 and 4 samples at a third of
  * the pixels in each direction, of 8 at a half, then of twice as many samples each time, which those before are a part
- * of. Where the noise or the time decides, there are at most 16. */
+ * of. After a pass that walks, which has one sample of all pixels, the next one has 8. Where the noise or the time
+ * decides, there are at most 16. */
 static void begin_finer_pass(struct viewer *viewer, double now) {
     enum { FIRST = 2, HALF = 8, ADAPTIVE_LIMIT = 16 };
     const struct settings *settings = &viewer->request.settings;
     bool adapts = settings->noise > 0 || settings->time_limit > 0;
-    uint32_t done = viewer->pass.view.samples, all = settings_path_samples(settings);
-    uint32_t samples = done > 0 ? 2 * done : FIRST, divide = samples < HALF ? 3 : samples == HALF ? 2 : 1;
+    const struct pass_view *before = &viewer->pass.view;
+    uint32_t done = before->samples, all = settings_path_samples(settings);
+    uint32_t samples = before->walks ? HALF : done > 0 ? 2 * done : FIRST;
+    uint32_t divide = before->walks || samples > HALF ? 1 : samples < HALF ? 3 : 2;
     bool last = !viewer_shows_denoised(viewer) || samples > all / 2 || (adapts && samples > ADAPTIVE_LIMIT);
-    bool keeps = done > HALF && !adapts && viewer->pass.result == RESULT_COARSE;
+    bool keeps = done > 0 && done < all && before->divide == 1 && !adapts && viewer->pass.result == RESULT_COARSE;
     begin_pass(viewer, last ? 1 : divide, false, false, now);
     viewer->pass.view.samples = last ? 0 : samples;
     viewer->pass.view.kept = keeps ? done : 0;
@@ -501,7 +521,10 @@ static enum viewer_action next_command(struct viewer *viewer, double now) {
         return VIEWER_NOTHING;
     } else if (viewer->pass.outdated) {
         viewer->pass.from_coarse = false;
-        begin_pass(viewer, viewer->pass.divide, true, false, now);
+        if (viewer->pass.walks && !viewer->window.mode.previews && !viewer_plays(viewer))
+            begin_walking_pass(viewer, now);
+        else
+            begin_pass(viewer, viewer->pass.divide, true, false, now);
     } else if (viewer->lights.known < viewer->lights.count) {
         viewer->command = (struct preview_command){.kind = COMMAND_LIGHTS, .first_light = viewer->lights.known};
     } else if (!viewer->pass.view.plain &&
@@ -528,7 +551,8 @@ static enum viewer_action next_command(struct viewer *viewer, double now) {
 /* What can be done while the render process works. */
 static enum viewer_action step_running(struct viewer *viewer) {
     /* A coarse pass ends soon and is useful to show; a fine one is stopped. */
-    bool coarse = viewer->pass.view.plain && viewer->pass.view.divide >= viewer->pass.divide;
+    const struct pass_view *view = &viewer->pass.view;
+    bool coarse = view->plain && (view->walks || view->divide >= viewer->pass.divide);
     if (viewer->pass.halted && viewer->block && viewer->pass.state != PASS_STOPPING) {
         viewer->pass.state = PASS_STOPPING;
         return VIEWER_STOP_PASS;

@@ -9,6 +9,7 @@
 #include "base/file_output.h"
 #include "base/share.h"
 #include "film/film.h"
+#include "image/tone_lookup.h"
 #include "preview/preview_messages.h"
 #include "render/fly_camera.h"
 #include "scene/edits.h"
@@ -77,6 +78,7 @@ struct viewer_pass {
     struct picture_report report; /* of the last pass that was finished */
     bool edited;                  /* for a changed scene */
     uint32_t divide;              /* of passes while the camera moves */
+    bool walks;                   /* a device makes these, with all pixels */
     double began;
     bool outdated;    /* the camera is not that of `view`, or the scene was changed */
     bool from_coarse; /* the next pass is a coarse one (R) */
@@ -219,6 +221,7 @@ struct viewer_window {
     bool sends_memory;             /* whether a larger pass has sent memory; set by the caller */
     struct frame_selection frames; /* of animations; set by the caller */
     uint8_t *image;                /* 3 bytes for each pixel of the whole part; owned */
+    struct tone_lookup *tones;     /* owned */
     float *light;                  /* the same before exposure and tone; owned */
     uint8_t *drawn;                /* by tile: the state in which it is on the image, or 0; owned */
     bool dirty;                    /* the image was changed since it was shown */

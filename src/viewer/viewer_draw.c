@@ -4,7 +4,6 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "image/png_write.h"
 #include "light/light_edit.h"
 #include "math/elementary.h"
 #include "math/frame.h"
@@ -38,31 +37,35 @@ void viewer_resize(struct viewer *viewer, int width, int height, double density)
 
 /* The image. */
 
-static void tone_pixel(const struct viewer *viewer, const struct tone *tone, size_t pixel) {
+static void tone_pixel(const struct viewer *viewer, size_t pixel) {
     float rgb[3];
     memcpy(rgb, viewer->window.light + 3 * pixel, sizeof rgb);
     if (viewer->overlay.has_lines)
         overlay_blend(viewer->overlay.lines[pixel], rgb);
-    for (size_t c = 0; c < 3; c++)
-        viewer->window.image[3 * pixel + c] = png_write_byte(tone_apply(tone, (double)rgb[c]));
+    tone_lookup_bytes(viewer->window.tones, rgb, 3, viewer->window.image + 3 * pixel);
+}
+
+static void begin_tone(const struct viewer *viewer) {
+    const struct tone tone = picture_tone(&viewer->request);
+    tone_lookup_set(viewer->window.tones, &tone);
 }
 
 /* One pixel of the image. */
 static void draw_again(struct viewer *viewer, size_t pixel) {
-    struct tone tone = picture_tone(&viewer->request);
-    tone_pixel(viewer, &tone, pixel);
+    begin_tone(viewer);
+    tone_pixel(viewer, pixel);
 }
 
 void viewer_redraw(struct viewer *viewer) {
-    struct tone tone = picture_tone(&viewer->request);
+    begin_tone(viewer);
     for (size_t i = 0; i < (size_t)viewer->request.width * viewer->request.height; i++)
-        tone_pixel(viewer, &tone, i);
+        tone_pixel(viewer, i);
     viewer->window.dirty = true;
     viewer->window.large.stale = viewer->window.large.shown;
 }
 
 /* One pixel of the film is a square of the image. */
-static void draw_pixel(struct viewer *viewer, const struct tone *tone, uint32_t x, uint32_t y) {
+static void draw_pixel(struct viewer *viewer, uint32_t x, uint32_t y) {
     const struct picture_request *request = &viewer->request;
     uint32_t divide = viewer->pass.view.divide;
     const float *colour = viewer->pass.film.pixels[(size_t)y * viewer->pass.film.width + x].rgb;
@@ -75,7 +78,7 @@ static void draw_pixel(struct viewer *viewer, const struct tone *tone, uint32_t 
             memcpy(viewer->window.light + 3 * pixel, colour, 3 * sizeof *colour);
             bool lined = viewer->overlay.has_lines && viewer->overlay.lines[pixel][3] < 1;
             if (!begun || lined)
-                tone_pixel(viewer, tone, pixel);
+                tone_pixel(viewer, pixel);
             else
                 memcpy(viewer->window.image + 3 * pixel, viewer->window.image + 3 * first, 3);
             first = lined || begun ? first : pixel;
@@ -83,6 +86,16 @@ static void draw_pixel(struct viewer *viewer, const struct tone *tone, uint32_t 
         }
     }
 }
+
+/* Pixels of the film that are pixels of the image. */
+static void draw_row(struct viewer *viewer, uint32_t y, uint32_t first, uint32_t count) {
+    const struct film *film = &viewer->pass.film;
+    const size_t from = (size_t)y * film->width + first, to = (size_t)y * viewer->request.width + first;
+    float *light = viewer->window.light + 3 * to;
+    memcpy(light, &film->pixels[from], count * sizeof *film->pixels);
+    tone_lookup_bytes(viewer->window.tones, light, (size_t)3 * count, viewer->window.image + 3 * to);
+}
+_Static_assert(sizeof(struct film_pixel) == 3 * sizeof(float), "a row of them is a row of floats");
 
 /* The pixels of the film on both sides of the middle of a pixel, and how far it is to the second one, of 256. */
 struct interpolation {
@@ -147,16 +160,20 @@ void viewer_draw_tiles(struct viewer *viewer) {
     bool denoised = !view->plain && viewer_shows_denoised(viewer);
     if (smooth && (viewer->pass.result != RESULT_COARSE || draw_smooth(viewer)))
         return;
-    struct tone tone = picture_tone(&viewer->request);
+    begin_tone(viewer);
+    const bool in_rows = view->divide == 1 && !viewer->overlay.has_lines;
     for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
         uint8_t state = atomic_load_explicit(&film->tiles[tile], memory_order_acquire);
         bool shows = denoised ? state == FILM_TILE_DONE : film_tile_shows(state);
         if (!shows || viewer->window.drawn[tile] == state)
             continue;
         struct film_rectangle r = film_tile_rectangle(film, tile);
-        for (uint32_t y = r.y0 - film->y0; y < r.y1 - film->y0; y++)
-            for (uint32_t x = r.x0 - film->x0; x < r.x1 - film->x0; x++)
-                draw_pixel(viewer, &tone, x, y);
+        for (uint32_t y = r.y0 - film->y0; y < r.y1 - film->y0; y++) {
+            if (in_rows)
+                draw_row(viewer, y, r.x0 - film->x0, r.x1 - r.x0);
+            for (uint32_t x = r.x0 - film->x0; x < r.x1 - film->x0 && !in_rows; x++)
+                draw_pixel(viewer, x, y);
+        }
         viewer->window.drawn[tile] = state;
         viewer->window.dirty = true;
     }

@@ -344,6 +344,44 @@ TEST(a_card_gives_the_bytes_of_threads) {
     stage_end(&s);
 }
 
+static enum path_device_answer show_card(void *context, const struct path_view *view) {
+    struct service *service = context;
+    if (!service->cuda)
+        return PATH_DEVICE_BEGINS;
+    CHECK(emulation_set_view(service->emulation, view));
+    cuda_set_view(service->cuda, view);
+    return PATH_DEVICE_TAKES;
+}
+
+/* The scene is uploaded once. */
+TEST(a_card_gives_the_bytes_of_threads_for_view_after_view) {
+    struct stage s;
+    begin_scene(&s);
+    struct service service = {s.pool, emulation_create(s.pool, 0, 0), NULL, {0}};
+    const struct path_device device = {
+        .take_view = show_card, .begin = begin_service, .make = make_by_card, .context = &service};
+    reset_card();
+    kernels = own;
+    for (int i = 0; i < 3; i++) {
+        s.camera.eye.x = 0.6 * i; /* the last one in the glass */
+        s.camera.eye.z = 6 - 3 * i;
+        CHECK(stage_render(&s, WIDTH, HEIGHT + (uint32_t)i));
+        struct render_job job = stage_job(&s, WIDTH, HEIGHT + (uint32_t)i);
+        const size_t size = (size_t)WIDTH * job.height * job.film->record.floats * sizeof(float);
+        float *floats = mem_alloc(size);
+        memcpy(floats, job.film->floats, size);
+        job.device = &device;
+        for (uint32_t k = 0; k < film_tile_count(job.film); k++)
+            atomic_store(&job.film->tiles[k], FILM_TILE_WANTED);
+        CHECK(render_run(&job, s.pool, &s.statistics, &s.error));
+        CHECK(memcmp(job.film->floats, floats, size) == 0 && service.cuda && !cuda_lost(service.cuda));
+        mem_free(floats);
+    }
+    cuda_destroy(service.cuda);
+    emulation_destroy(service.emulation);
+    stage_end(&s);
+}
+
 /* Looks a name up; objects and functions have addresses of one size. */
 static void find_symbol(void *library, const char *name, void *pointer) {
     void *found = dlsym(library, name);

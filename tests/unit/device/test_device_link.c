@@ -8,6 +8,9 @@
 #define device_link_statistics device_link_statistics_here
 #define device_client_wait device_client_wait_here
 #define device_client_make device_client_make_here
+#define device_link_is_closed device_link_is_closed_here
+#define device_client_is_ready device_client_is_ready_here
+#define device_client_set_view device_client_set_view_here
 #include "device/device_link.c"
 
 #include "base/mem.h"
@@ -15,6 +18,7 @@
 #include "tests/harness.h"
 #include "tests/stage.h"
 
+#include <math.h>
 #include <pthread.h>
 
 enum { WIDTH = 16, HEIGHT = 12 };
@@ -24,13 +28,14 @@ struct server {
     void *scene;
     size_t size;
     bool served;
+    struct error error;
+    struct path_view view;
     pthread_t thread;
 };
 
 static void *run_server(void *context) {
     struct server *server = context;
-    struct error error;
-    server->served = device_link_serve(server->link, NULL, server->scene, server->size, 2, &error);
+    server->served = device_link_serve(server->link, NULL, server->scene, server->size, 2, &server->error);
     return NULL;
 }
 
@@ -44,8 +49,14 @@ static bool keep_scene(void *context, struct bundle *scene, bool *is_used, struc
     return error_set(error, ERROR_CANCELLED, "kept");
 }
 
+static enum path_device_answer keep_view(void *context, const struct path_view *view) {
+    struct server *server = context;
+    server->view = *view;
+    return PATH_DEVICE_BEGINS;
+}
+
 static void begin_server(struct stage *s, struct server *server) {
-    const struct path_device receiver = {.begin = keep_scene, .context = server};
+    const struct path_device receiver = {.take_view = keep_view, .begin = keep_scene, .context = server};
     stage_begin(s, 1);
     s->settings.integrator = INTEGRATOR_PATH;
     s->settings.path_samples = 4;
@@ -63,7 +74,6 @@ static void begin_server(struct stage *s, struct server *server) {
 static void end_server(struct stage *s, struct server *server) {
     device_link_close(server->link);
     (void)pthread_join(server->thread, NULL);
-    CHECK(server->served);
     mem_free(server->link);
     mem_free(server->scene);
     stage_end(s);
@@ -87,7 +97,7 @@ TEST(a_device_process_survives_every_order_and_goes_on) {
     struct stage s;
     struct server server = {.served = false};
     begin_server(&s, &server);
-    const struct device_client client = {server.link, s.pool, 2};
+    const struct device_client client = {server.link, s.pool, 2, 0};
     CHECK(device_client_wait(&client));
     uint64_t random = 9, made = 0;
     for (int i = 0; i < 500; i++) {
@@ -125,13 +135,14 @@ TEST(a_device_process_survives_every_order_and_goes_on) {
     }
     CHECK_EQ_INT((int64_t)counts.camera_rays, WIDTH * HEIGHT * 4);
     end_server(&s, &server);
+    CHECK(server.served);
 }
 
 TEST(a_render_process_does_not_wait_for_a_device_that_is_gone) {
     struct stage s;
     struct server server = {.served = false};
     begin_server(&s, &server);
-    struct device_client client = {server.link, s.pool, 2};
+    struct device_client client = {server.link, s.pool, 2, 0};
     CHECK(device_client_wait(&client));
     device_link_close(server.link);
     struct path_pixel pixels[WIDTH * HEIGHT] = {{.samples = 0}};
@@ -140,6 +151,45 @@ TEST(a_render_process_does_not_wait_for_a_device_that_is_gone) {
     CHECK(device_client_make(&client, &(struct path_orders){&order, 1, pixels}, &counts));
     CHECK(pixels[0].samples == 0 && counts.camera_rays == 0);
     end_server(&s, &server);
+    CHECK(server.served);
+}
+
+TEST(an_order_is_made_for_the_newest_view_alone_and_a_damaged_one_ends_the_device) {
+    struct stage s;
+    struct server server = {.served = false};
+    begin_server(&s, &server);
+    struct device_client client = {server.link, s.pool, 2, 0};
+    CHECK(device_client_wait(&client));
+    const struct path_order order = {0, 0, WIDTH, HEIGHT, 0, 4};
+    struct path_pixel pixels[3][WIDTH * HEIGHT] = {{{.samples = 0}}};
+    struct path_counts counts = {0};
+    CHECK(device_client_make(&client, &(struct path_orders){&order, 1, pixels[0]}, &counts) &&
+          pixels[0][0].samples == 4);
+    /* The view of the bundle once more, and then an order for the one before. */
+    device_client_set_view(&client, &server.view);
+    CHECK(device_client_make(&client, &(struct path_orders){&order, 1, pixels[1]}, &counts));
+    CHECK(memcmp(pixels[0], pixels[1], sizeof pixels[0]) == 0);
+    client.view = 0;
+    CHECK(device_client_make(&client, &(struct path_orders){&order, 1, pixels[2]}, &counts) &&
+          pixels[2][0].samples == 0);
+    client.view = 7;
+    CHECK(device_client_make(&client, &(struct path_orders){&order, 1, pixels[2]}, &counts) &&
+          pixels[2][0].samples == 0);
+    client.view = 1;
+    CHECK(device_client_make(&client, &(struct path_orders){&order, 1, pixels[2]}, &counts) &&
+          pixels[2][0].samples == 4);
+    server.view.camera.eye.x = NAN;
+    device_client_set_view(&client, &server.view);
+    memset(pixels[2], 0, sizeof pixels[2]);
+    CHECK(device_client_make(&client, &(struct path_orders){&order, 1, pixels[2]}, &counts) &&
+          pixels[2][0].samples == 0);
+    char reason[DEVICE_REASON];
+    device_link_reason(server.link, reason);
+    CHECK_TEXT(reason, "the data of a view is damaged");
+    CHECK(device_link_is_closed(server.link));
+    end_server(&s, &server);
+    CHECK(!server.served);
+    CHECK_TEXT(server.error.text, "the data of a view is damaged");
 }
 
 TEST(the_reason_of_a_device_process_is_one_line_whatever_the_memory_holds) {

@@ -59,7 +59,8 @@ static void render(struct server *server, uint32_t samples, bool *is_same) {
     memcpy(floats, job.film->floats, size);
     const struct host_services services = {.context = server, .device = begin_server, .line = keep_line};
     struct picture_device device = {.services = &services, .pool = s.pool, .kind = DEVICE_AUTO};
-    struct path_device maker = picture_device_maker(&device, INTEGRATOR_PATH);
+    struct path_device maker;
+    CHECK(picture_device_init(&device, INTEGRATOR_PATH, &maker, &s.error));
     job.device = &maker;
     if (server->began)
         maker.is_worth = NULL;

@@ -4,6 +4,7 @@
 #include "image/image.h"
 #include "image/png_write.h"
 #include "image/tone.h"
+#include "image/tone_lookup.h"
 #include "tests/harness.h"
 
 #include <math.h>
@@ -317,6 +318,51 @@ TEST(deep_png_holds_sixteen_bits) {
     CHECK_EQ_INT(tone_word(0.5), 32768);
     CHECK_EQ_INT(tone_word(7), 65535);
     CHECK_EQ_INT(tone_word((double)NAN), 0);
+}
+
+static void check_lookup(struct tone_lookup *lookup, float light) {
+    const uint8_t exact = png_write_byte(tone_apply(&lookup->tone, (double)light));
+    uint8_t found;
+    tone_lookup_bytes(lookup, &light, 1, &found);
+    if (found != exact)
+        test_fail(__FILE__, __LINE__, "%a: %d in place of %d", (double)light, found, exact);
+}
+
+/* All floats where a byte ends, their neighbours, and any others; one table for tone after tone. */
+TEST(a_lookup_of_bytes_is_exact_for_every_tone) {
+    static struct tone_lookup lookup;
+    static struct tone_table table;
+    struct test_random random = {4};
+    for (int i = 0; i < TONE_ENTRIES; i++)
+        table.values[i] = (float)(i % 300) / 300;
+    for (int round = 0; round < 16; round++) {
+        const struct tone tone = {.exposure = round % 2 ? 0 : 0.5 * round - 3,
+                                  .curve = (enum tone_curve)(round / 4),
+                                  .srgb = round / 2 % 2,
+                                  .table = &table};
+        tone_lookup_set(&lookup, &tone);
+        for (int k = 0; k < 2; k++)
+            for (int byte = 1; byte < 256; byte++) {
+                uint32_t low = 0, high = 0x7f800000;
+                float light;
+                while (high - low > 1) {
+                    const uint32_t middle = low + (high - low) / 2;
+                    memcpy(&light, &middle, sizeof light);
+                    *(png_write_byte(tone_apply(&tone, (double)light)) < byte ? &low : &high) = middle;
+                }
+                for (uint32_t bits = low - 3; bits < low + 5; bits++) {
+                    memcpy(&light, &bits, sizeof light);
+                    check_lookup(&lookup, light);
+                }
+            }
+        for (int i = 0; i < 100000; i++) {
+            check_lookup(&lookup, (float)test_uniform(&random, 0, 1.5));
+            check_lookup(&lookup, (float)exp(test_uniform(&random, -14, 14)));
+        }
+        const float odd[] = {0, -0.0f, -1, NAN, INFINITY, -INFINITY, 1e-40f, 0x1p-16f, 0x1p16f};
+        for (size_t i = 0; i < sizeof odd / sizeof *odd; i++)
+            check_lookup(&lookup, odd[i]);
+    }
 }
 
 static const char bright_scene[] =

@@ -451,6 +451,52 @@ TEST(window_shows_samples_of_paths_only_denoised_and_doubles_them) {
     end(&t);
 }
 
+/* A device is there: the first picture of a movement has all pixels, and the samples that follow are added to it. */
+TEST(window_with_a_quick_device_walks_with_one_sample_and_adds_to_it_afterwards) {
+    static const struct { uint32_t samples, kept; } want[] = {{8, 1}, {16, 8}, {32, 16}, {0, 32}};
+    struct table t;
+    const struct settings settings = {.integrator = INTEGRATOR_PATH, .denoise = DENOISER_GRAY};
+    begin_with(&t, render_record(&settings), 64);
+    const struct picture_report report = {.threads = 2, .bounds = {{-1, -1, -1}, {1, 1, 1}}};
+    const struct preview_reply ready = {.kind = REPLY_PASS, .report = report, .walks = true};
+    while (t.viewer.pass.view.plain) {
+        finish_pass(&t, 0.02, false);
+        CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    }
+    print_news(&t, &ready);
+    for (int i = 0; i < 5; i++) {
+        do_action(&t.fake, DO_ROLL_LEFT);
+        CHECK_EQ_INT(step(&t), i == 0 ? VIEWER_SEND_COMMAND : VIEWER_NOTHING);
+        if (i > 0) { /* it is not stopped */
+            CHECK_EQ_INT(t.viewer.pass.state, PASS_RUNNING);
+            print_news(&t, &ready);
+            CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+        }
+        const struct pass_view *view = &t.viewer.command.view;
+        CHECK(view->walks && view->plain && !view->headlight && !view->own);
+        CHECK(view->divide == 1 && view->samples == 1 && view->kept == 0);
+    }
+    print_news(&t, &ready);
+    for (size_t i = 0; i < sizeof want / sizeof *want; i++) {
+        const struct pass_view *view = &t.viewer.command.view;
+        CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+        CHECK(!view->walks && !view->plain && view->divide == 1);
+        CHECK_EQ_INT(view->samples, want[i].samples);
+        CHECK_EQ_INT(view->kept, want[i].kept);
+        print_news(&t, &ready);
+    }
+    /* It is gone; or the user wants to see normals. */
+    print_news(&t, &(struct preview_reply){.kind = REPLY_PASS, .report = report});
+    do_action(&t.fake, DO_ROLL_LEFT);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK(!t.viewer.command.view.walks && t.viewer.command.view.headlight);
+    print_news(&t, &ready);
+    do_action(&t.fake, DO_SHOW_NORMALS);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK(!t.viewer.command.view.walks && t.viewer.command.view.headlight);
+    end(&t);
+}
+
 TEST(window_that_shows_normals_ends_with_their_preview_and_writes_no_picture) {
     struct table t;
     begin(&t);
