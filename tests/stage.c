@@ -193,3 +193,14 @@ void stage_point_light(struct stage *s, struct vec3 position, struct colour colo
     s->lights[s->light_count++] =
         (struct light){.kind = LIGHT_POINT, .position = position, .colour = colour, .falloff = {1, 0, 0}};
 }
+
+void stage_lenses(struct stage *s, const struct material *material, int count) {
+    struct node *group = scene_node(&s->scene, NODE_GROUP, "operands", &s->error);
+    for (int i = 0; i < count; i++) {
+        struct node *balls[2] = {stage_sphere(s, group, material), stage_sphere(s, group, material)};
+        stage_move(s, balls[0], -1.5, 0.3 * i, -0.4 * i);
+        stage_move(s, balls[1], -1.1, 0.3 * i, 0.3 - 0.4 * i);
+        struct node *lens = scene_combine(&s->scene, "lens", NODE_INTERSECTION, balls, 2, &s->error);
+        CHECK(lens && node_add_child(&s->scene, s->root, lens, &s->error));
+    }
+}

@@ -60,6 +60,8 @@ struct node *stage_group(struct stage *s, struct node *parent);
 struct node *stage_sphere(struct stage *s, struct node *parent, const struct material *material);
 struct node *stage_cube(struct stage *s, struct node *parent, const struct material *material);
 void stage_move(struct stage *s, struct node *node, double x, double y, double z);
+/* So many intersections of two balls, which cover each other for a camera at +z. */
+void stage_lenses(struct stage *s, const struct material *material, int count);
 void stage_scale(struct stage *s, struct node *node, double x, double y, double z);
 void stage_rotate(struct stage *s, struct node *node, int axis, double degrees);
 void stage_point_light(struct stage *s, struct vec3 position, struct colour colour);

@@ -30,7 +30,15 @@ static const double memory_share = 0.8, longest_launch = 0.025, shortest_launch 
     X(LANES, "lanes")                                                                                                  \
     X(ARITHMETIC, "arithmetic")                                                                                        \
     X(BEGIN, "begin")                                                                                                  \
-    X(EXTEND, "extend") X(SORT, "sort") X(SHADE, "shade") X(SHADOW, "shadow") X(ADD, "add") X(FINISH, "finish")
+    X(EXTEND, "extend")                                                                                                \
+    X(SORT_QUESTIONS, "sort_questions")                                                                                \
+    X(ASK, "ask")                                                                                                      \
+    X(KEEP, "keep")                                                                                                    \
+    X(SORT, "sort")                                                                                                    \
+    X(SHADE, "shade")                                                                                                  \
+    X(SHADOW, "shadow")                                                                                                \
+    X(ADD, "add")                                                                                                      \
+    X(FINISH, "finish")
 #define KERNEL_MEMBER(member, name) KERNEL_##member,
 #define KERNEL_NAME(member, name) "kernel_" name,
 enum kernel { KERNELS(KERNEL_MEMBER) KERNEL_COUNT };
@@ -39,7 +47,7 @@ enum kernel { KERNELS(KERNEL_MEMBER) KERNEL_COUNT };
 struct card_stream {
     _Atomic bool taken;
     void *handle;
-    uint64_t wave, orders, states[2], results, living[2], pixels, lanes; /* addresses on the card; 0: none yet */
+    uint64_t wave, orders, paths, pixels, lanes; /* addresses on the card; 0: none yet */
 };
 
 struct cuda {
@@ -146,11 +154,6 @@ const char *cuda_lost(struct cuda *cuda) {
 
 /* --- streams --- */
 
-/* Of a path in flight. */
-static uint64_t path_bytes(const struct cuda *cuda) {
-    return 2 * path_wave_state_size() + path_wave_result_size(cuda->scene) + 2 * sizeof(uint32_t);
-}
-
 /* A stream of its own for each thread. */
 static struct card_stream *take_stream(struct cuda *cuda) {
     for (uint32_t i = 0; i < CUDA_STREAMS; i++)
@@ -159,16 +162,19 @@ static struct card_stream *take_stream(struct cuda *cuda) {
     return NULL;
 }
 
+/* Of so many paths in flight. */
+static uint64_t path_bytes(const struct cuda *cuda, uint32_t count) {
+    struct wave wave;
+    return wave_lay(&wave, cuda->scene, 0, count);
+}
+
 static bool fill_stream(struct cuda *cuda, struct card_stream *stream, struct error *error) {
     if (stream->lanes)
         return true;
-    const size_t states = (size_t)cuda->room * path_wave_state_size(), list = cuda->room * sizeof(uint32_t);
-    const size_t results = (size_t)cuda->room * path_wave_result_size(cuda->scene);
     return CALL(cuda, error, stream_create, &stream->handle, 1 /* no order with stream 0 */) &&
            CALL(cuda, error, take, &stream->wave, sizeof(struct wave)) &&
-           CALL(cuda, error, take, &stream->states[0], states) && CALL(cuda, error, take, &stream->states[1], states) &&
-           CALL(cuda, error, take, &stream->results, results) && CALL(cuda, error, take, &stream->living[0], list) &&
-           CALL(cuda, error, take, &stream->living[1], list) && CALL(cuda, error, take, &stream->pixels, PIXEL_BYTES) &&
+           CALL(cuda, error, take, &stream->paths, path_bytes(cuda, cuda->room)) &&
+           CALL(cuda, error, take, &stream->pixels, PIXEL_BYTES) &&
            CALL(cuda, error, take, &stream->orders, ORDER_BYTES) &&
            CALL(cuda, error, take, &stream->lanes, cuda->lanes * path_lane_size(cuda->crossings));
 }
@@ -192,7 +198,8 @@ static bool launch(struct cuda *cuda, const struct card_stream *stream, enum ker
 
 /* The most paths and lanes for which all streams fit into the memory of the card. */
 static bool divide_memory(struct cuda *cuda, size_t idle, struct error *error) {
-    const uint64_t state = path_bytes(cuda), lane = path_lane_size(cuda->crossings), fixed = PIXEL_BYTES + ORDER_BYTES;
+    const uint64_t state = path_bytes(cuda, SMALLEST_WAVE) / SMALLEST_WAVE + 1, lane = path_lane_size(cuda->crossings),
+                   fixed = PIXEL_BYTES + ORDER_BYTES;
     const uint64_t budget = (uint64_t)(memory_share * (double)idle) / CUDA_STREAMS;
     const uint64_t wanted = (uint64_t)cuda->processors * THREADS * BLOCKS;
     const uint64_t needed = SMALLEST_WAVE * state + THREADS * lane + fixed;
@@ -295,7 +302,7 @@ bool cuda_open_scene(struct cuda *cuda, void *bytes, size_t size, const struct p
     statistics->start_seconds = clock_now() - cuda->begun;
     statistics->lanes = cuda->lanes;
     const uint64_t stream =
-        cuda->room * path_bytes(cuda) + cuda->lanes * path_lane_size(cuda->crossings) + PIXEL_BYTES + ORDER_BYTES;
+        path_bytes(cuda, cuda->room) + cuda->lanes * path_lane_size(cuda->crossings) + PIXEL_BYTES + ORDER_BYTES;
     statistics->bytes = size + CUDA_STREAMS * stream;
     return true;
 }
@@ -337,6 +344,10 @@ static bool run_wave(struct cuda *cuda, const struct card_stream *stream, struct
         const uint32_t count = wave->living_count[turn % 2];
         const double start = clock_now();
         ok = launch(cuda, stream, KERNEL_EXTEND, count, turn, error) &&
+             (!path_scene_leaves_solids(cuda->scene) ||
+              (launch(cuda, stream, KERNEL_SORT_QUESTIONS, count, turn, error) &&
+               launch(cuda, stream, KERNEL_ASK, count, turn, error) &&
+               launch(cuda, stream, KERNEL_KEEP, count, turn, error))) &&
              launch(cuda, stream, KERNEL_SORT, count, turn, error) &&
              launch(cuda, stream, KERNEL_SHADE, count, turn, error) &&
              launch(cuda, stream, KERNEL_SHADOW, count, turn, error) &&
@@ -367,12 +378,8 @@ static bool run_orders(struct cuda *cuda, struct card_stream *stream, const stru
     struct wave wave = {.scene = (const struct path_scene *)(uintptr_t)cuda->scene_on_card,
                         .orders = (const struct wave_order *)(uintptr_t)stream->orders,
                         .order_count = orders->count,
-                        .pixels = (struct path_pixel *)(uintptr_t)stream->pixels,
-                        .states = {(char *)(uintptr_t)stream->states[0], (char *)(uintptr_t)stream->states[1]},
-                        .results = (char *)(uintptr_t)stream->results,
-                        .state_size = path_wave_state_size(),
-                        .result_size = path_wave_result_size(cuda->scene),
-                        .living = {(uint32_t *)(uintptr_t)stream->living[0], (uint32_t *)(uintptr_t)stream->living[1]}};
+                        .pixels = (struct path_pixel *)(uintptr_t)stream->pixels};
+    (void)wave_lay(&wave, cuda->scene, stream->paths, cuda->room);
     bool ok = CALL(cuda, error, upload, stream->pixels, orders->pixels, size, stream->handle) &&
               CALL(cuda, error, upload, stream->orders, numbered, orders->count * sizeof *numbered, stream->handle) &&
               launch(cuda, stream, KERNEL_LANES, cuda->lanes, 0, error);

@@ -70,6 +70,12 @@ static bool run_wave(const struct emulation *emulation, struct wave *wave, struc
             return false;
         for (uint32_t k = 0; k < count; k++)
             wave_extend(wave, lane, turn, k);
+        for (uint32_t k = 0; k < wave_questions(wave); k++)
+            wave_sort_question(wave, k);
+        for (uint32_t k = 0; k < wave_questions(wave); k++)
+            wave_ask(wave, lane, turn, k);
+        for (uint32_t k = 0; k < count && path_scene_leaves_solids(wave->scene); k++)
+            wave_keep(wave, turn, k);
         for (uint32_t k = 0; k < count; k++)
             wave_sort(wave, turn, k);
         wave_clear_next(wave, turn);
@@ -108,21 +114,13 @@ static bool make(void *context, const struct path_orders *orders, struct path_co
     const uint64_t paths = path_orders_paths(orders);
     const uint32_t crossings = emulation->crossings > 0 ? emulation->crossings : path_scene_crossings(scene);
     struct wave_order numbered[PATH_ORDERS];
-    struct wave wave = {.scene = scene,
-                        .orders = numbered,
-                        .order_count = orders->count,
-                        .pixels = orders->pixels,
-                        .state_size = path_wave_state_size(),
-                        .result_size = path_wave_result_size(scene)};
+    struct wave wave = {.scene = scene, .orders = numbered, .order_count = orders->count, .pixels = orders->pixels};
     const uint32_t room = paths < emulation->wave ? (uint32_t)paths : emulation->wave;
     wave_number_orders(orders, numbered);
-    wave.states[0] = mem_alloc(room * wave.state_size);
-    wave.states[1] = mem_alloc(room * wave.state_size);
-    wave.results = mem_alloc(room * wave.result_size);
-    wave.living[0] = mem_alloc(room * sizeof *wave.living[0]);
-    wave.living[1] = mem_alloc(room * sizeof *wave.living[1]);
+    void *block = mem_alloc_aligned(16, wave_lay(&wave, scene, 0, room));
     void *memory = mem_alloc_aligned(16, path_lane_size(crossings));
-    bool goes_on = wave.states[0] && wave.states[1] && wave.results && wave.living[0] && wave.living[1] && memory;
+    bool goes_on = block && memory;
+    (void)wave_lay(&wave, scene, (uint64_t)(uintptr_t)block, room);
     struct path_lane *lane = goes_on ? path_lane_init(memory, scene, crossings) : NULL;
     for (; goes_on && wave.first < paths; wave.first += wave.count) {
         const uint64_t left = paths - wave.first;
@@ -138,11 +136,7 @@ static bool make(void *context, const struct path_orders *orders, struct path_co
         path_counts_add(counts, &made);
     }
     mem_free(memory);
-    mem_free(wave.living[1]);
-    mem_free(wave.living[0]);
-    mem_free(wave.results);
-    mem_free(wave.states[1]);
-    mem_free(wave.states[0]);
+    mem_free(block);
     return goes_on;
 }
 

@@ -34,6 +34,9 @@ void kernel_lanes(uint64_t lanes, uint64_t scene, uint32_t crossings);
 void kernel_arithmetic(uint64_t digests);
 void kernel_begin(uint64_t wave, uint64_t lanes, uint32_t crossings);
 void kernel_extend(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
+void kernel_sort_questions(uint64_t wave);
+void kernel_ask(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
+void kernel_keep(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
 void kernel_sort(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
 void kernel_shade(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
 void kernel_shadow(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
@@ -65,6 +68,26 @@ void kernel_extend(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t t
     struct path_lane *lane = lane_of(lanes, crossings);
     for (uint32_t k = thread_index(); k < w->living_count[turn % 2]; k += thread_count())
         wave_extend(w, lane, turn, k);
+}
+
+void kernel_sort_questions(uint64_t wave) {
+    struct wave *w = (struct wave *)(uintptr_t)wave;
+    for (uint32_t k = thread_index(); k < wave_questions(w); k += thread_count())
+        wave_sort_question(w, k);
+}
+
+void kernel_ask(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn) {
+    struct wave *w = (struct wave *)(uintptr_t)wave;
+    struct path_lane *lane = lane_of(lanes, crossings);
+    for (uint32_t k = thread_index(); k < wave_questions(w); k += thread_count())
+        wave_ask(w, lane, turn, k);
+}
+
+void kernel_keep(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn) {
+    struct wave *w = (struct wave *)(uintptr_t)wave;
+    (void)lanes, (void)crossings;
+    for (uint32_t k = thread_index(); k < w->living_count[turn % 2]; k += thread_count())
+        wave_keep(w, turn, k);
 }
 
 void kernel_sort(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn) {

@@ -1,5 +1,29 @@
 #include "device/wave_internal.h"
 
+/* Addresses of a card have the size of those here. */
+static void *part(uint64_t *end, uint64_t size) {
+    const uint64_t at = *end;
+    *end += (size + 15) / 16 * 16;
+    return (void *)(uintptr_t)at;
+}
+
+uint64_t wave_lay(struct wave *wave, const struct path_scene *scene, uint64_t address, uint32_t room) {
+    uint64_t end = address;
+    wave->state_size = path_wave_state_size();
+    wave->result_size = path_wave_result_size(scene);
+    wave->room = path_scene_leaves_solids(scene) ? room : 0;
+    for (int i = 0; i < 2; i++) {
+        wave->states[i] = part(&end, room * wave->state_size);
+        wave->living[i] = part(&end, room * sizeof *wave->living[i]);
+    }
+    wave->results = part(&end, room * wave->result_size);
+    wave->questions = part(&end, wave->room * sizeof *wave->questions);
+    wave->answers = part(&end, wave->room * sizeof *wave->answers);
+    wave->first_question = part(&end, wave->room * sizeof *wave->first_question);
+    wave->asked = part(&end, wave->room * sizeof *wave->asked);
+    return end - address;
+}
+
 /* side: the turn, or the next one after its states have moved. */
 static struct path_wave_state *state_of(const struct wave *wave, uint32_t side, uint32_t i) {
     return (struct path_wave_state *)(void *)(wave->states[side % 2] + i * wave->state_size);
@@ -47,20 +71,82 @@ void wave_begin(struct wave *wave, struct path_lane *lane, uint32_t i) {
         keep_alive(wave, 0, i);
 }
 
+static void count(uint32_t *counts, uint32_t class) {
+    (void)__atomic_fetch_add(&counts[class], 1, __ATOMIC_RELAXED);
+}
+
+/* The next position of a class, behind those of all classes before it. */
+static uint32_t position(const uint32_t counts[PATH_CLASSES], uint32_t used[PATH_CLASSES], uint32_t class) {
+    uint32_t first = 0;
+    for (uint32_t c = 0; c < class; c++)
+        first += counts[c];
+    return first + __atomic_fetch_add(&used[class], 1, __ATOMIC_RELAXED);
+}
+
+static struct path_wave_answer *answer_of(const struct wave *wave, uint32_t number) {
+    return (struct path_wave_answer *)(void *)wave->answers[number];
+}
+
+/* Puts a question into the list of its state, or answers it. */
+static void put_question(struct wave *wave, struct path_lane *lane, uint32_t turn, struct wave_question question) {
+    const uint32_t number = __atomic_fetch_add(&wave->question_count, 1, __ATOMIC_RELAXED);
+    struct path_wave_state *state = state_of(wave, turn, question.state);
+    char answer[PATH_ANSWER_ROOM] __attribute__((aligned(16)));
+    if (number < wave->room) {
+        question.next = wave->first_question[question.state];
+        wave->questions[number] = question;
+        wave->first_question[question.state] = number + 1;
+        count(wave->question_class_count, path_wave_question_class(wave->scene, question.primitive));
+        return;
+    }
+    struct path_wave_answer *own = (struct path_wave_answer *)(void *)answer;
+    path_wave_ask(wave->scene, lane, state, question.primitive, own);
+    path_wave_keep(state, own);
+}
+
 void wave_extend(struct wave *wave, struct path_lane *lane, uint32_t turn, uint32_t k) {
-    struct path_wave_state *state = state_of(wave, turn, wave->living[turn % 2][k]);
-    path_wave_extend(wave->scene, lane, state);
-    (void)__atomic_fetch_add(&wave->class_count[path_wave_class(wave->scene, state)], 1, __ATOMIC_RELAXED);
+    const uint32_t number = wave->living[turn % 2][k];
+    struct path_wave_state *state = state_of(wave, turn, number);
+    struct path_wave_questions questions;
+    path_wave_extend(wave->scene, lane, state, &questions);
+    if (path_scene_leaves_solids(wave->scene))
+        wave->first_question[number] = 0;
+    for (uint32_t i = 0; i < questions.count; i++)
+        put_question(wave, lane, turn, (struct wave_question){number, questions.primitives[i], 0});
+    if (!path_scene_leaves_solids(wave->scene) || wave->first_question[number] == 0)
+        count(wave->class_count, path_wave_class(wave->scene, state));
+}
+
+uint32_t wave_questions(const struct wave *wave) {
+    return wave->question_count < wave->room ? wave->question_count : wave->room;
+}
+
+void wave_sort_question(struct wave *wave, uint32_t k) {
+    const uint32_t class = path_wave_question_class(wave->scene, wave->questions[k].primitive);
+    wave->asked[position(wave->question_class_count, wave->question_class_used, class)] = k;
+}
+
+void wave_ask(struct wave *wave, struct path_lane *lane, uint32_t turn, uint32_t k) {
+    const uint32_t number = wave->asked[k];
+    const struct wave_question *question = &wave->questions[number];
+    path_wave_ask(wave->scene, lane, state_of(wave, turn, question->state), question->primitive,
+                  answer_of(wave, number));
+}
+
+void wave_keep(struct wave *wave, uint32_t turn, uint32_t k) {
+    const uint32_t number = wave->living[turn % 2][k];
+    struct path_wave_state *state = state_of(wave, turn, number);
+    if (wave->first_question[number] == 0)
+        return;
+    for (uint32_t i = wave->first_question[number]; i > 0; i = wave->questions[i - 1].next)
+        path_wave_keep(state, answer_of(wave, i - 1));
+    count(wave->class_count, path_wave_class(wave->scene, state));
 }
 
 void wave_sort(struct wave *wave, uint32_t turn, uint32_t k) {
     const struct path_wave_state *state = state_of(wave, turn, wave->living[turn % 2][k]);
     const uint32_t class = path_wave_class(wave->scene, state);
-    uint32_t first = 0;
-    for (uint32_t c = 0; c < class; c++)
-        first += wave->class_count[c];
-    first += __atomic_fetch_add(&wave->class_used[class], 1, __ATOMIC_RELAXED);
-    path_wave_move(state_of(wave, turn + 1, first), state);
+    path_wave_move(state_of(wave, turn + 1, position(wave->class_count, wave->class_used, class)), state);
 }
 
 void wave_shade(struct wave *wave, struct path_lane *lane, uint32_t turn, uint32_t k) {
@@ -76,9 +162,11 @@ void wave_shadow(struct wave *wave, struct path_lane *lane, uint32_t turn, uint3
 }
 
 void wave_clear_next(struct wave *wave, uint32_t turn) {
-    wave->living_count[(turn + 1) % 2] = 0;
-    for (uint32_t c = 0; c < PATH_CLASSES; c++)
+    wave->living_count[(turn + 1) % 2] = wave->question_count = 0;
+    for (uint32_t c = 0; c < PATH_CLASSES; c++) {
         wave->class_count[c] = wave->class_used[c] = 0;
+        wave->question_class_count[c] = wave->question_class_used[c] = 0;
+    }
 }
 
 uint32_t wave_pixels(const struct wave *wave) {

@@ -671,7 +671,7 @@ static void begin(struct path *path, const struct integrator_state *state, const
 }
 
 /* What the ray hits first. */
-static void extend(const struct integrator_state *state, struct path *path) {
+static inline void extend(const struct integrator_state *state, struct path *path) {
     if (!world_nearest_crossing(state->job->world, &path->ray, state->scratch, &path->met.primitive,
                                 &path->met.crossing))
         path->met.primitive = WORLD_NOTHING;

@@ -13,6 +13,8 @@
 #include "render/path_wave_internal.h"
 #include "render/sample_internal.h"
 
+#include <string.h>
+
 struct path_wave_state {
     struct path path;
     double seen_through;
@@ -24,12 +26,17 @@ struct path_wave_state {
 struct path_wave_light {
     struct path_shadow shadow;
 };
+struct path_wave_answer {
+    struct packet_answer met;
+    bool failed;
+};
 struct path_wave_result {
     struct colour light;
     double seen_through, weight; /* weight: of the filter */
     bool failed;
     struct path_parts parts; /* with scene->has_room */
 };
+_Static_assert(sizeof(struct path_wave_answer) <= PATH_ANSWER_ROOM, "an answer has room");
 _Static_assert(sizeof(struct path_wave_light) <= sizeof(struct path_wave_state), "they share memory");
 _Static_assert(2 * sizeof(struct path_wave_state) + offsetof(struct path_wave_result, parts) <= 1160,
                "millions of paths fit into memory");
@@ -162,11 +169,41 @@ void path_wave_move(struct path_wave_state *to, const struct path_wave_state *fr
     to->path.ray.media = &to->path.media;
 }
 
-void path_wave_extend(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *wave) {
+_Static_assert((int)PATH_QUESTIONS == (int)DEVICE_QUESTIONS, "a search leaves as many as a path asks");
+
+void path_wave_extend(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *wave,
+                      struct path_wave_questions *questions) {
+    const struct device_query query = {scene->job.world, &wave->path.ray, &lane->scratch};
+    struct device_questions left = {.count = 0};
     enter(lane, scene, wave, NULL);
-    if (!wave->below)
-        extend(&lane->state, &wave->path);
+    if (!wave->below) {
+        lane->scratch.rays++;
+        device_search_nearest(&query, &wave->path.met, &left);
+    }
     leave(lane, wave);
+    questions->count = left.count;
+    memcpy(questions->primitives, left.primitives, sizeof left.primitives);
+}
+
+bool path_scene_leaves_solids(const struct path_scene *scene) {
+    return scene->job.world->device->has_slow;
+}
+
+uint32_t path_wave_question_class(const struct path_scene *scene, uint32_t primitive) {
+    return scene->job.world->primitives[primitive].prototype % PATH_CLASSES;
+}
+
+void path_wave_ask(const struct path_scene *scene, struct path_lane *lane, const struct path_wave_state *wave,
+                   uint32_t primitive, struct path_wave_answer *answer) {
+    const struct device_query query = {scene->job.world, &wave->path.ray, &lane->scratch};
+    enter(lane, scene, wave, NULL);
+    device_search_ask(&query, primitive, &wave->path.met, &answer->met);
+    answer->failed = lane->scratch.failed;
+}
+
+void path_wave_keep(struct path_wave_state *wave, const struct path_wave_answer *answer) {
+    device_search_keep(&wave->path.met, &answer->met);
+    wave->failed = wave->failed || answer->failed;
 }
 
 uint32_t path_wave_class(const struct path_scene *scene, const struct path_wave_state *wave) {

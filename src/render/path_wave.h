@@ -67,8 +67,23 @@ bool path_wave_begin(const struct path_scene *scene, struct path_lane *lane, con
 uint32_t path_wave_number(const struct path_wave_state *state);
 /* The state lies elsewhere from now on. */
 void path_wave_move(struct path_wave_state *to, const struct path_wave_state *from);
-void path_wave_extend(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *state);
-/* After it: paths of one class do the same next, by the material that they have met. */
+/* What the ray meets first; but some solids are left, for path_wave_ask. */
+enum { PATH_QUESTIONS = 4 };
+struct path_wave_questions {
+    uint32_t primitives[PATH_QUESTIONS], count;
+};
+bool path_scene_leaves_solids(const struct path_scene *scene);
+void path_wave_extend(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *state,
+                      struct path_wave_questions *questions);
+/* The answer of a primitive that was left, which the path then keeps, in any order; and its class, of those that need
+ * the same equations. */
+struct path_wave_answer;
+enum { PATH_ANSWER_ROOM = 64 }; /* bytes that are enough for it */
+uint32_t path_wave_question_class(const struct path_scene *scene, uint32_t primitive);
+void path_wave_ask(const struct path_scene *scene, struct path_lane *lane, const struct path_wave_state *state,
+                   uint32_t primitive, struct path_wave_answer *answer);
+void path_wave_keep(struct path_wave_state *state, const struct path_wave_answer *answer);
+/* After them: paths of one class do the same next, by the material that they have met. */
 enum { PATH_CLASSES = 16 };
 uint32_t path_wave_class(const struct path_scene *scene, const struct path_wave_state *state);
 /* shadow returns whether the path goes on; otherwise its result is complete. */

@@ -97,12 +97,20 @@ static bool add_mesh(struct building *b, const struct mesh *mesh, uint32_t *root
     return ok;
 }
 
+static bool is_slow(const struct geometry *geometry) {
+    const struct shape *shape = &geometry->shape;
+    return geometry->csg || (!geometry_mesh(geometry) && (shape_is_listed(shape) || shape->kind == SHAPE_TORUS ||
+                                                          shape->kind == SHAPE_SUPERELLIPSOID));
+}
+
 /* The hierarchies of meshes that are not, or not only, in the top. */
 static bool add_meshes(struct building *b) {
     const struct world *world = b->world;
     uint32_t *roots = b->search->roots;
-    for (uint32_t i = 0; i < world->prototype_count; i++)
-        roots[i] = FLOAT_TREE_NONE;
+    for (uint32_t i = 0; i < world->prototype_count; i++) {
+        roots[i] = is_slow(&world->prototypes[i].geometry) ? DEVICE_SLOW : FLOAT_TREE_NONE;
+        b->search->has_slow = b->search->has_slow || roots[i] == DEVICE_SLOW;
+    }
     for (uint32_t i = 0; i < world->primitive_count; i++) {
         const struct mesh *mesh = b->first[i] == NOT_IN_TOP ? plain_mesh(world, i) : NULL;
         uint32_t *root = mesh ? key_map_find(&b->rooted, key_of(mesh)) : NULL;
@@ -211,10 +219,9 @@ struct search {
     struct view outer, view; /* in the world, and in the space that is searched */
     uint32_t inside;         /* the primitive whose hierarchy is searched; WORLD_NOTHING: the top */
     /* SEARCH_NEAREST: */
-    bool found;
-    uint32_t primitive;
-    struct crossing *best;
-    double t_max; /* just behind the best hit, so that an equal t is still found */
+    struct packet_answer *best;
+    struct device_questions *questions; /* or NULL */
+    double t_max;                       /* of limit_of */
 };
 
 /* No memory at an index that only the ray knows. */
@@ -249,17 +256,20 @@ static inline bool crosses(const struct view *view, const struct device_triangle
 }
 
 /* Whether a hit there comes before the best one. */
-static inline bool is_before(const struct search *s, double t, uint32_t primitive, uint32_t part) {
-    return !s->found || t < s->best->t ||
-           (t == s->best->t && (primitive < s->primitive || (primitive == s->primitive && part < s->best->part)));
+static inline bool is_before(const struct packet_answer *best, double t, uint32_t primitive, uint32_t part) {
+    const struct crossing *crossing = &best->crossing;
+    return best->primitive == WORLD_NOTHING || t < crossing->t ||
+           (t == crossing->t &&
+            (primitive < best->primitive || (primitive == best->primitive && part < crossing->part)));
 }
 
-static inline void keep(struct search *s, uint32_t primitive, const struct crossing *crossing) {
-    const double just_behind = crossing->t + fabs(crossing->t) * 0x1p-52;
-    *s->best = *crossing;
-    s->found = true;
-    s->primitive = primitive;
-    s->t_max = just_behind < s->ray->t_max ? just_behind : s->ray->t_max;
+/* Where a search ends: just behind the best hit, so that an equal t is still found. */
+static inline double limit_of(const struct ray *ray, const struct packet_answer *best) {
+    const double t = best->crossing.t;
+    if (best->primitive == WORLD_NOTHING)
+        return ray->t_max;
+    const double just_behind = t + fabs(t) * 0x1p-52;
+    return just_behind < ray->t_max ? just_behind : ray->t_max;
 }
 
 /* True: the search is over. */
@@ -276,24 +286,30 @@ FOR_EACH_MODE bool try_run(struct search *s, uint32_t reference, enum search_mod
             continue;
         if (mode == SEARCH_ANY)
             return true;
-        if (!is_before(s, crossing.t, primitive, triangle->part))
+        if (!is_before(s->best, crossing.t, primitive, triangle->part))
             continue;
         crossing.part = triangle->part;
         crossing.flip = false;
         crossing.leaf = 0;
-        keep(s, primitive, &crossing);
+        *s->best = (struct packet_answer){crossing, primitive};
+        s->t_max = limit_of(ray, s->best);
     }
     return false;
 }
 
-static __attribute__((noinline)) void ask_nearest(struct search *s, uint32_t primitive) {
-    struct crossing crossing;
-    struct ray limited = *s->ray;
-    limited.t_max = s->t_max;
-    const struct ray ray_object = primitive_ray(s->world, primitive, &limited);
-    if (world_ask_nearest(s->world, primitive, &ray_object, s->scratch, &crossing) &&
-        is_before(s, crossing.t, primitive, crossing.part))
-        keep(s, primitive, &crossing);
+void device_search_keep(struct packet_answer *best, const struct packet_answer *answer) {
+    if (answer->primitive != WORLD_NOTHING &&
+        is_before(best, answer->crossing.t, answer->primitive, answer->crossing.part))
+        *best = *answer;
+}
+
+__attribute__((noinline)) void device_search_ask(const struct device_query *query, uint32_t of,
+                                                 const struct packet_answer *best, struct packet_answer *answer) {
+    struct ray limited = *query->ray;
+    limited.t_max = limit_of(query->ray, best);
+    const struct ray ray_object = primitive_ray(query->world, of, &limited);
+    const bool found = world_ask_nearest(query->world, of, &ray_object, query->scratch, &answer->crossing);
+    answer->primitive = found ? of : WORLD_NOTHING;
 }
 
 /* A primitive that is a leaf of the top. True: the search is over, or *root is to be searched in its space. */
@@ -303,6 +319,9 @@ FOR_EACH_MODE bool try_single(struct search *s, uint32_t primitive, enum search_
     if (ray_skips(s->ray, primitive))
         return false;
     *root = world->device->roots[world->primitives[primitive].prototype];
+    const bool is_slow = *root == DEVICE_SLOW;
+    if (is_slow)
+        *root = FLOAT_TREE_NONE;
     if (*root != FLOAT_TREE_NONE) {
         const struct ray ray_object = primitive_ray(world, primitive, s->ray);
         view_set(&s->view, &ray_object);
@@ -311,7 +330,14 @@ FOR_EACH_MODE bool try_single(struct search *s, uint32_t primitive, enum search_
     }
     if (mode == SEARCH_ANY)
         return world_ask_any(world, primitive, s->ray, s->scratch);
-    ask_nearest(s, primitive);
+    if (is_slow && s->questions && s->questions->count < DEVICE_QUESTIONS) {
+        s->questions->primitives[s->questions->count++] = primitive;
+        return false;
+    }
+    struct packet_answer answer;
+    device_search_ask(&(struct device_query){world, s->ray, s->scratch}, primitive, s->best, &answer);
+    device_search_keep(s->best, &answer);
+    s->t_max = limit_of(s->ray, s->best);
     return false;
 }
 
@@ -336,7 +362,6 @@ FOR_EACH_MODE bool search(struct search *s, enum search_mode mode) {
     uint32_t stack[STACK], height = 1, reference = device->top;
     stack[0] = STACK_END;
     s->inside = WORLD_NOTHING;
-    s->found = false;
     s->t_max = s->ray->t_max;
     view_set(&s->outer, s->ray);
     s->view = s->outer;
@@ -345,7 +370,7 @@ FOR_EACH_MODE bool search(struct search *s, enum search_mode mode) {
         while (!(reference & FLOAT_TREE_LEAF))
             reference = next_below(s, &device->nodes[reference], end, stack, &height);
         if (reference == STACK_END)
-            return s->found;
+            return false;
         if (reference == STACK_RETURN) {
             s->view = s->outer;
             s->inside = WORLD_NOTHING;
@@ -369,18 +394,16 @@ FOR_EACH_MODE bool search(struct search *s, enum search_mode mode) {
     }
 }
 
-__attribute__((noinline)) bool device_search_nearest(const struct world *world, const struct ray *ray,
-                                                     struct world_scratch *scratch, uint32_t *primitive,
-                                                     struct crossing *crossing) {
+__attribute__((noinline)) void device_search_nearest(const struct device_query *query, struct packet_answer *answer,
+                                                     struct device_questions *questions) {
     struct search s;
-    s.world = world;
-    s.ray = ray;
-    s.scratch = scratch;
-    s.best = crossing;
-    s.primitive = 0;
-    const bool found = search(&s, SEARCH_NEAREST);
-    *primitive = s.primitive;
-    return found;
+    s.world = query->world;
+    s.ray = query->ray;
+    s.scratch = query->scratch;
+    s.best = answer;
+    s.questions = questions;
+    answer->primitive = WORLD_NOTHING;
+    (void)search(&s, SEARCH_NEAREST);
 }
 
 __attribute__((noinline)) bool device_search_any(const struct world *world, const struct ray *ray,

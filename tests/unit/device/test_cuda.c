@@ -44,8 +44,9 @@ static struct {
 #define PLAYED_MODULE(kernel) kernel " 8\nkernels\0"
 static const char played_kernels[] =
     "gray kernels\n" PLAYED_MODULE("kernel_lanes") PLAYED_MODULE("kernel_arithmetic") PLAYED_MODULE("kernel_begin")
-        PLAYED_MODULE("kernel_extend") PLAYED_MODULE("kernel_sort") PLAYED_MODULE("kernel_shade")
-            PLAYED_MODULE("kernel_shadow") PLAYED_MODULE("kernel_add") PLAYED_MODULE("kernel_finish");
+        PLAYED_MODULE("kernel_extend") PLAYED_MODULE("kernel_sort_questions") PLAYED_MODULE("kernel_ask")
+            PLAYED_MODULE("kernel_keep") PLAYED_MODULE("kernel_sort") PLAYED_MODULE("kernel_shade")
+                PLAYED_MODULE("kernel_shadow") PLAYED_MODULE("kernel_add") PLAYED_MODULE("kernel_finish");
 
 static void reset_card(void) {
     for (int i = 0; i < card.block_count; i++)
@@ -150,9 +151,10 @@ static int play_load(void **module, const void *image) {
     return answer();
 }
 
-static const char *const kernel_names[] = {"kernel_lanes",  "kernel_arithmetic", "kernel_begin",
-                                           "kernel_extend", "kernel_sort",       "kernel_shade",
-                                           "kernel_shadow", "kernel_add",        "kernel_finish"};
+static const char *const kernel_names[] = {
+    "kernel_lanes",          "kernel_arithmetic", "kernel_begin", "kernel_extend",
+    "kernel_sort_questions", "kernel_ask",        "kernel_keep",  "kernel_sort",
+    "kernel_shade",          "kernel_shadow",     "kernel_add",   "kernel_finish"};
 static int play_function(void **function, void *module, const char *name) {
     (void)module;
     for (size_t i = 0; i < sizeof kernel_names / sizeof *kernel_names; i++)
@@ -177,6 +179,9 @@ struct kernels {
     void (*arithmetic)(uint64_t digests);
     void (*begin)(uint64_t wave, uint64_t lanes, uint32_t crossings);
     void (*extend)(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
+    void (*sort_questions)(uint64_t wave);
+    void (*ask)(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
+    void (*keep)(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
     void (*sort)(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
     void (*shade)(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
     void (*shadow)(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
@@ -184,18 +189,19 @@ struct kernels {
     void (*finish)(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t count);
     uint32_t *thread, *threads;
 };
-static const struct kernels own = {kernel_lanes,  kernel_arithmetic, kernel_begin,   kernel_extend,
-                                   kernel_sort,   kernel_shade,      kernel_shadow,  kernel_add,
-                                   kernel_finish, &played_thread,    &played_threads};
+static const struct kernels own = {kernel_lanes,          kernel_arithmetic, kernel_begin, kernel_extend,
+                                   kernel_sort_questions, kernel_ask,        kernel_keep,  kernel_sort,
+                                   kernel_shade,          kernel_shadow,     kernel_add,   kernel_finish,
+                                   &played_thread,        &played_threads};
 static struct kernels kernels;
 
-enum { ARITHMETIC = 1, ADD = 7 };
+enum { ARITHMETIC = 1, ADD = 10 };
 static void run_kernel(int kernel, uint64_t first, uint64_t second, uint32_t crossings, uint32_t last) {
     switch (kernel) {
     case 0:
         kernels.lanes(first, second, crossings);
         break;
-    case 1:
+    case ARITHMETIC:
         kernels.arithmetic(first);
         break;
     case 2:
@@ -205,12 +211,21 @@ static void run_kernel(int kernel, uint64_t first, uint64_t second, uint32_t cro
         kernels.extend(first, second, crossings, last);
         break;
     case 4:
-        kernels.sort(first, second, crossings, last);
+        kernels.sort_questions(first);
         break;
     case 5:
-        kernels.shade(first, second, crossings, last);
+        kernels.ask(first, second, crossings, last);
         break;
     case 6:
+        kernels.keep(first, second, crossings, last);
+        break;
+    case 7:
+        kernels.sort(first, second, crossings, last);
+        break;
+    case 8:
+        kernels.shade(first, second, crossings, last);
+        break;
+    case 9:
         kernels.shadow(first, second, crossings, last);
         break;
     case ADD:
@@ -267,9 +282,10 @@ static void begin_scene(struct stage *s) {
     stage_scale(s, floor, 20, 1, 20);
     stage_move(s, floor, -10, -2, -10);
     stage_move(s, stage_sphere(s, s->root, stage_glass(s, 1, 1, 1.5)), 1.2, 0, 0);
+    stage_lenses(s, stage_phong(s, colour_make(0.8, 0.2, 0.1), colour_all(0), 1), 3);
 }
 
-/* A card of two orders at a time, and the emulation that the card is compared with. */
+/* A card, and the emulation that the card is compared with. */
 struct service {
     struct pool *pool;
     struct emulation *emulation;
@@ -411,6 +427,9 @@ TEST(what_a_ray_touches_compiles_for_cards_and_gives_the_bytes_of_threads) {
     find_symbol(library, "kernel_arithmetic", &kernels.arithmetic);
     find_symbol(library, "kernel_begin", &kernels.begin);
     find_symbol(library, "kernel_extend", &kernels.extend);
+    find_symbol(library, "kernel_sort_questions", &kernels.sort_questions);
+    find_symbol(library, "kernel_ask", &kernels.ask);
+    find_symbol(library, "kernel_keep", &kernels.keep);
     find_symbol(library, "kernel_sort", &kernels.sort);
     find_symbol(library, "kernel_shade", &kernels.shade);
     find_symbol(library, "kernel_shadow", &kernels.shadow);

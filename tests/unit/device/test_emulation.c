@@ -33,6 +33,7 @@ static void begin_scene(struct stage *s) {
     stage_move(s, floor, -10, -2, -10);
     stage_move(s, stage_sphere(s, s->root, stage_glass(s, 1, 1, 1.5)), 1.2, 0, 0);
     stage_move(s, stage_sphere(s, s->root, stage_glass(s, 1, 0, 1)), -1.2, 0, 0);
+    stage_lenses(s, stage_phong(s, colour_make(0.8, 0.2, 0.1), colour_all(0), 1), 6);
 }
 
 /* The colours and the records of the film. */
