@@ -28,7 +28,7 @@
  * in `order`, the first in the 28 low bits, how many more above them. */
 #define FLOAT_TREE_LEAF UINT32_C(0x80000000)
 #define FLOAT_TREE_SINGLE UINT32_C(0x40000000) /* a leaf with the item in the bits below */
-#define FLOAT_TREE_NONE UINT32_MAX            /* the root of nothing */
+#define FLOAT_TREE_NONE UINT32_MAX             /* the root of nothing */
 enum {
     FLOAT_TREE_DEPTH = 40, /* of nodes on the way to a leaf: so many entries of a stack suffice */
     FLOAT_TREE_RUN = 4,
@@ -40,6 +40,10 @@ struct float_node {
     float box[2][6]; /* of each child: the lower, then the upper sides */
     uint32_t child[2], padding[2];
 } __attribute__((aligned(16)));
+
+/* Aligned parts of nodes and of triangles: one load each. */
+typedef float float_quad __attribute__((vector_size(16), may_alias));
+typedef double double_pair __attribute__((vector_size(16), may_alias));
 
 /* Zero-initialised: no hierarchies. Owner: the holder, float_trees_destroy. */
 struct float_trees {

@@ -245,7 +245,9 @@ static void view_set(struct view *view, const struct ray *ray) {
 
 /* The numbers are those of triangle_cross. */
 static inline bool crosses(const struct view *view, const struct device_triangle *triangle, struct triangle_hit *hit) {
-    const double *v = triangle->corners, all[9] = {v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8]};
+    const double_pair *pairs = (const double_pair *)(const void *)triangle, p = pairs[0], q = pairs[1], r = pairs[2],
+                      s = pairs[3];
+    const double all[9] = {p[0], p[1], q[0], q[1], r[0], r[1], s[0], s[1], triangle->corners[8]};
     double seen[3][3];
     for (int i = 0; i < 3; i++) {
         seen[i][0] = along(all + 3 * i, view->x) - view->origin[0];
@@ -312,6 +314,26 @@ __attribute__((noinline)) void device_search_ask(const struct device_query *quer
     answer->primitive = found ? of : WORLD_NOTHING;
 }
 
+/* What is rare or large stays out of the loop of the search. */
+#define APART static __attribute__((noinline))
+
+APART void enter_mesh(struct search *s, uint32_t primitive) {
+    const struct ray ray_object = primitive_ray(s->world, primitive, s->ray);
+    view_set(&s->view, &ray_object);
+    s->inside = primitive;
+}
+
+APART bool ask_any(const struct search *s, uint32_t primitive) {
+    return world_ask_any(s->world, primitive, s->ray, s->scratch);
+}
+
+APART void ask_nearest(struct search *s, uint32_t primitive) {
+    struct packet_answer answer;
+    device_search_ask(&(struct device_query){s->world, s->ray, s->scratch}, primitive, s->best, &answer);
+    device_search_keep(s->best, &answer);
+    s->t_max = limit_of(s->ray, s->best);
+}
+
 /* A primitive that is a leaf of the top. True: the search is over, or *root is to be searched in its space. */
 FOR_EACH_MODE bool try_single(struct search *s, uint32_t primitive, enum search_mode mode, uint32_t *root) {
     const struct world *world = s->world;
@@ -323,21 +345,15 @@ FOR_EACH_MODE bool try_single(struct search *s, uint32_t primitive, enum search_
     if (is_slow)
         *root = FLOAT_TREE_NONE;
     if (*root != FLOAT_TREE_NONE) {
-        const struct ray ray_object = primitive_ray(world, primitive, s->ray);
-        view_set(&s->view, &ray_object);
-        s->inside = primitive;
+        enter_mesh(s, primitive);
         return true;
     }
     if (mode == SEARCH_ANY)
-        return world_ask_any(world, primitive, s->ray, s->scratch);
-    if (is_slow && s->questions && s->questions->count < DEVICE_QUESTIONS) {
+        return ask_any(s, primitive);
+    if (is_slow && s->questions && s->questions->count < DEVICE_QUESTIONS)
         s->questions->primitives[s->questions->count++] = primitive;
-        return false;
-    }
-    struct packet_answer answer;
-    device_search_ask(&(struct device_query){world, s->ray, s->scratch}, primitive, s->best, &answer);
-    device_search_keep(s->best, &answer);
-    s->t_max = limit_of(s->ray, s->best);
+    else
+        ask_nearest(s, primitive);
     return false;
 }
 
@@ -345,10 +361,12 @@ FOR_EACH_MODE bool try_single(struct search *s, uint32_t primitive, enum search_
 static inline uint32_t next_below(const struct search *s, const struct float_node *node, float end, uint32_t *stack,
                                   uint32_t *height) {
     const struct float_ray *ray = &s->view.boxes;
+    const float_quad *quads = (const float_quad *)(const void *)node, p = quads[0], q = quads[1], r = quads[2];
+    const float boxes[2][6] = {{p[0], p[1], p[2], p[3], q[0], q[1]}, {q[2], q[3], r[0], r[1], r[2], r[3]}};
     const uint32_t left = node->child[0], right = node->child[1];
     float to_left, to_right;
-    const bool meets_left = float_ray_meets(ray, node->box[0], end, &to_left);
-    const bool meets_right = float_ray_meets(ray, node->box[1], end, &to_right);
+    const bool meets_left = float_ray_meets(ray, boxes[0], end, &to_left);
+    const bool meets_right = float_ray_meets(ray, boxes[1], end, &to_right);
     if (!meets_left && !meets_right)
         return stack[--*height];
     const bool right_first = meets_right && (!meets_left || to_right < to_left);
@@ -404,6 +422,14 @@ __attribute__((noinline)) void device_search_nearest(const struct device_query *
     s.questions = questions;
     answer->primitive = WORLD_NOTHING;
     (void)search(&s, SEARCH_NEAREST);
+}
+
+bool device_search_crossing(const struct device_query *query, uint32_t *primitive, struct crossing *crossing) {
+    struct packet_answer answer;
+    device_search_nearest(query, &answer, NULL);
+    *primitive = answer.primitive;
+    *crossing = answer.crossing;
+    return answer.primitive != WORLD_NOTHING;
 }
 
 __attribute__((noinline)) bool device_search_any(const struct world *world, const struct ray *ray,

@@ -50,15 +50,16 @@ struct device_query {
     const struct ray *ray;
     struct world_scratch *scratch;
 };
-/* world_nearest_crossing of such a world; primitive WORLD_NOTHING: nothing. questions: or NULL; primitives that were
- * left. With the answer of each of them kept, in any order, it is the answer of world_nearest_crossing. */
+/* What a ray meets first in such a world; primitive WORLD_NOTHING: nothing. questions: or NULL; primitives that were
+ * left. With the answer of each of them kept, in any order, it is that. */
 void device_search_nearest(const struct device_query *query, struct packet_answer *answer,
                            struct device_questions *questions);
 /* of: a primitive, alone; what it cannot change in the answer so far, `best`, it leaves out. */
 void device_search_ask(const struct device_query *query, uint32_t of, const struct packet_answer *best,
                        struct packet_answer *answer);
 void device_search_keep(struct packet_answer *best, const struct packet_answer *answer);
-/* world_any of such a world. */
+/* world_nearest_crossing and world_any of such a world. */
+bool device_search_crossing(const struct device_query *query, uint32_t *primitive, struct crossing *crossing);
 bool device_search_any(const struct world *world, const struct ray *ray, struct world_scratch *scratch);
 
 #endif

@@ -123,12 +123,8 @@ bool world_ask_any(const struct world *world, uint32_t index, const struct ray *
 
 bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
                             uint32_t *primitive, struct crossing *crossing) {
-    struct packet_answer answer;
     scratch->rays++;
-    device_search_nearest(&(struct device_query){world, ray, scratch}, &answer, NULL);
-    *primitive = answer.primitive;
-    *crossing = answer.crossing;
-    return answer.primitive != WORLD_NOTHING;
+    return device_search_crossing(&(struct device_query){world, ray, scratch}, primitive, crossing);
 }
 
 bool world_any(const struct world *world, const struct ray *ray, struct world_scratch *scratch) {
@@ -335,12 +331,8 @@ FOR_EACH_MODE void search_all(struct search *s, enum search_mode mode) {
 /* The world of a bundle. */
 FOR_EACH_MODE void search_for_device(struct search *s, enum search_mode mode) {
     if (mode == SEARCH_NEAREST) {
-        struct packet_answer answer;
-        device_search_nearest(&(struct device_query){s->world, s->ray, s->scratch}, &answer, NULL);
         s->best = s->next;
-        *s->best = answer.crossing;
-        s->primitive = answer.primitive;
-        s->found = answer.primitive != WORLD_NOTHING;
+        s->found = device_search_crossing(&(struct device_query){s->world, s->ray, s->scratch}, &s->primitive, s->best);
         return;
     }
     s->found = device_search_any(s->world, s->ray, s->scratch);
