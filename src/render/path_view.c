@@ -90,7 +90,8 @@ static bool camera_fits(const struct camera_frame *camera) {
            is_below(&lens->projection, sizeof lens->projection, (uint32_t)(sizeof projections / sizeof *projections)) &&
            is_below(&lens->stereo, sizeof lens->stereo, (uint32_t)(sizeof stereos / sizeof *stereos)) &&
            is_below(&lens->depth, sizeof lens->depth, 2) && lens->blades >= 0 && lens->rows >= 0 &&
-           lens->rows <= LIGHT_FIELD_SIDE && lens->columns >= 0 && lens->columns <= LIGHT_FIELD_SIDE;
+           lens->rows <= LIGHT_FIELD_SIDE && lens->columns >= 0 && lens->columns <= LIGHT_FIELD_SIDE &&
+           (lens->rows > 0) == (lens->columns > 0);
 }
 
 bool path_view_fits(const struct path_scene *scene, const struct path_view *view) {

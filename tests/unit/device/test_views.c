@@ -156,6 +156,7 @@ TEST(views_with_numbers_that_are_not_possible_are_refused) {
     REFUSES(view.camera.width = 0);
     REFUSES(view.camera.lens.aperture = -HUGE_VAL);
     REFUSES(view.camera.lens.rows = -1);
+    REFUSES(view.camera.lens.columns = 3); /* of no rows */
     REFUSES(view.camera.lens.columns = LIGHT_FIELD_SIDE + 1);
     REFUSES(view.camera.lens.blades = -3);
     REFUSES(memset(&view.camera.lens.projection, 0x7f, sizeof view.camera.lens.projection));
