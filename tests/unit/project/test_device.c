@@ -54,9 +54,7 @@ TEST(a_device_process_gives_the_bytes_of_threads_in_every_kind_of_render) {
     compare("data/path/table.lua", "--integrator path --size 40x30 --spp 20 --noise .2");
     compare("data/path/table.lua", "--integrator path --size 40x30 --spp 4 --aov all");
     compare("data/path/table.lua", "--integrator path --size 64x48 --spp 4 --crop 10,9,33,20");
-    compare("data/path/table.lua", "--integrator path --size 40x30 --spp 4 --caustics 1000");
     compare("data/path/table.lua", "--integrator path --size 40x30 --spp 4 --line-width 2 --denoise");
-    compare("data/06demo.lua", "--size 40x30 --integrator whitted");
 }
 
 TEST(parts_frames_and_resumed_pictures_are_the_same_with_and_without_a_device) {
@@ -161,6 +159,14 @@ TEST_LONG(whenever_a_process_of_a_run_with_a_device_is_killed_the_old_picture_is
 
 TEST(what_device_there_is_is_an_option_or_in_the_environment) {
     test_write_file(test_path("scene.lua"), room, sizeof room - 1);
+    test_shell("for options in '--integrator whitted' '--caustics 100'; do "
+               "$gray -q -o cpu.pfm $options scene.lua && $gray -q --device emulate -o other.pfm $options scene.lua && "
+               "cmp cpu.pfm other.pfm && rm *.pfm || exit 1; done",
+               0, "");
+    test_shell("$gray --device gpu -o x.pfm scene.lua --caustics 100 2>&1; s=$?; ls x.pfm 2>/dev/null; exit $s", 1,
+               "--device gpu: a device has no photons (--caustics)");
+    test_shell("$gray --device gpu -o x.pfm scene.lua --integrator whitted 2>&1", 1,
+               "--device gpu: a device has no integrator but path");
     test_shell("GRAY_DEVICE=emulate $gray --spp 1 --verbose scene.lua --integrator whitted 2>&1", 0,
                "gray: the processor renders: a device has no integrator but path");
     test_shell("GRAY_DEVICE=emulate $gray --spp 1 --verbose --force scene.lua --caustics 100 2>&1", 0,
