@@ -240,7 +240,8 @@ static bool try_samples(struct cuda *cuda, const struct path_device *here, struc
     struct path_pixel pixels[2][PIXELS];
     struct path_counts counts = {0};
     const struct path_order order = path_scene_trial(cuda->scene, 8, 2);
-    const struct path_orders of_card = {&order, 1, pixels[0]}, of_here = {&order, 1, pixels[1]};
+    const size_t size = path_scene_pixel_size(cuda->scene);
+    const struct path_orders of_card = {&order, 1, pixels[0], size}, of_here = {&order, 1, pixels[1], size};
     const struct path_device card = cuda_device(cuda);
     memset(pixels, 0, sizeof pixels);
     if (path_order_pixels(&order) > PIXELS || !here->make(here->context, &of_here, &counts) ||
@@ -257,11 +258,11 @@ static bool try_samples(struct cuda *cuda, const struct path_device *here, struc
 /* Samples a second: orders of a tile, each time with four times as many paths, until .1 s are over. */
 static bool measure(struct cuda *cuda, struct error *error) {
     static const double seconds = 0.1;
-    const size_t tile = FILM_TILE * FILM_TILE * sizeof(struct path_pixel);
+    const size_t tile = FILM_TILE * FILM_TILE * path_scene_pixel_size(cuda->scene);
     const struct path_device card = cuda_device(cuda);
     const double end = clock_now() + seconds;
     struct path_order all[PATH_ORDERS];
-    struct path_orders orders = {all, 1, mem_alloc_zero(PATH_ORDERS, tile)};
+    struct path_orders orders = {all, 1, mem_alloc_zero(PATH_ORDERS, tile), path_scene_pixel_size(cuda->scene)};
     if (!orders.pixels)
         return error_no_memory(error, "a card");
     for (uint32_t more = 1; clock_now() < end && more <= 1 << 14 && !cuda_lost(cuda); more *= 4) {
@@ -369,7 +370,7 @@ static bool run_wave(struct cuda *cuda, const struct card_stream *stream, struct
 static bool run_orders(struct cuda *cuda, struct card_stream *stream, const struct path_orders *orders,
                        struct path_counts *counts, struct error *error) {
     const uint64_t paths = path_orders_paths(orders);
-    const size_t size = (size_t)path_orders_pixels(orders) * sizeof *orders->pixels;
+    const size_t size = (size_t)path_orders_pixels(orders) * orders->pixel_size;
     struct wave_order numbered[PATH_ORDERS];
     if (!CALL(cuda, error, context_use, cuda->context) || !fill_stream(cuda, stream, error))
         return false;
@@ -378,7 +379,8 @@ static bool run_orders(struct cuda *cuda, struct card_stream *stream, const stru
     struct wave wave = {.scene = (const struct path_scene *)(uintptr_t)cuda->scene_on_card,
                         .orders = (const struct wave_order *)(uintptr_t)stream->orders,
                         .order_count = orders->count,
-                        .pixels = (struct path_pixel *)(uintptr_t)stream->pixels};
+                        .pixels = (char *)(uintptr_t)stream->pixels,
+                        .pixel_size = orders->pixel_size};
     (void)wave_lay(&wave, cuda->scene, stream->paths, cuda->room);
     bool ok = CALL(cuda, error, upload, stream->pixels, orders->pixels, size, stream->handle) &&
               CALL(cuda, error, upload, stream->orders, numbered, orders->count * sizeof *numbered, stream->handle) &&

@@ -21,7 +21,7 @@ struct slot {
     uint32_t count; /* orders */
     struct path_order orders[PATH_ORDERS];
     struct path_counts counts;
-    struct path_pixel pixels[PATH_ORDERS * FILM_TILE * FILM_TILE];
+    struct path_pixel pixels[PATH_ORDERS * FILM_TILE * FILM_TILE]; /* or smaller ones (path_pixel_size) */
 };
 
 /* Closed: before it was ready, or after. */
@@ -167,6 +167,7 @@ static bool make_any(const struct service *service) {
         struct path_orders orders = {.all = copy, .pixels = slot->pixels};
         slot->counts = (struct path_counts){0};
         if (copy_orders(slot, copy, &orders.count) && lock_view(service, slot->view)) {
+            orders.pixel_size = path_scene_pixel_size(emulation_scene(service->emulation));
             (void)service->device.make(service->device.context, &orders, &slot->counts);
             (void)pthread_rwlock_unlock(&service->view->lock);
         }
@@ -277,7 +278,7 @@ static void leave_slot(struct slot *slot) {
 
 bool device_client_make(struct device_client *client, const struct path_orders *orders, struct path_counts *counts) {
     struct device_link *link = client->link;
-    const size_t size = (size_t)path_orders_pixels(orders) * sizeof *orders->pixels;
+    const size_t size = (size_t)path_orders_pixels(orders) * orders->pixel_size;
     struct slot *slot = take_slot(client);
     if (!slot)
         return !pool_cancelled(client->pool);

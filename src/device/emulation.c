@@ -97,13 +97,12 @@ static bool has_nan(const double *numbers, size_t count) {
 }
 
 /* NaN has other bits on other machines, so no record has one. */
-static void check_numbers(const struct path_pixel *pixel) {
-    const float *features = pixel->features[0];
+static void check_numbers(const struct path_pixel *pixel, bool has_parts) {
     bool has = has_nan(&pixel->sums[0].r, 6) || has_nan(pixel->weights, 2) || has_nan(pixel->divisors, 2) ||
-               has_nan(&pixel->squares.r, 3) || has_nan(&pixel->light[0].r, (size_t)3 * PATH_LIGHT_GROUPS) ||
-               isnan(pixel->seen_through) || isnan(pixel->line);
-    for (int i = 0; i < 2 * PATH_FEATURES; i++)
-        has = has || isnan(features[i]);
+               has_nan(&pixel->squares.r, 3) || isnan(pixel->seen_through) || isnan(pixel->line) ||
+               (has_parts && has_nan(&pixel->light[0].r, (size_t)3 * PATH_LIGHT_GROUPS));
+    for (int i = 0; has_parts && i < 2 * PATH_FEATURES; i++)
+        has = has || isnan(pixel->features[0][i]);
     if (has)
         UNREACHABLE("NaN in a record");
 }
@@ -114,7 +113,11 @@ static bool make(void *context, const struct path_orders *orders, struct path_co
     const uint64_t paths = path_orders_paths(orders);
     const uint32_t crossings = emulation->crossings > 0 ? emulation->crossings : path_scene_crossings(scene);
     struct wave_order numbered[PATH_ORDERS];
-    struct wave wave = {.scene = scene, .orders = numbered, .order_count = orders->count, .pixels = orders->pixels};
+    struct wave wave = {.scene = scene,
+                        .orders = numbered,
+                        .order_count = orders->count,
+                        .pixels = orders->pixels,
+                        .pixel_size = orders->pixel_size};
     const uint32_t room = paths < emulation->wave ? (uint32_t)paths : emulation->wave;
     wave_number_orders(orders, numbered);
     void *block = mem_alloc_aligned(16, wave_lay(&wave, scene, 0, room));
@@ -130,7 +133,7 @@ static bool make(void *context, const struct path_orders *orders, struct path_co
     if (goes_on && path_scene_met_fault(scene))
         wave_leave_pixels(orders);
     for (uint64_t i = 0; goes_on && i < path_orders_pixels(orders); i++)
-        check_numbers(&orders->pixels[i]);
+        check_numbers(path_orders_pixel(orders, i), orders->pixel_size == path_pixel_size(true));
     if (lane) {
         const struct path_counts made = path_lane_counts(lane);
         path_counts_add(counts, &made);

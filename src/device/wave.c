@@ -178,17 +178,17 @@ void wave_add(struct wave *wave, uint32_t i) {
     const struct wave_order *order = order_of(wave, number, true);
     const uint32_t each = samples_of(&order->order);
     const uint64_t first = order->path + (number - order->pixel) * each;
-    struct path_pixel *pixel = &wave->pixels[number];
+    struct path_pixel *pixel = (struct path_pixel *)(void *)(wave->pixels + number * wave->pixel_size);
     for (uint64_t path = first > wave->first ? first : wave->first; path < first + each && path < end; path++)
         if (pixel->samples == order->order.begin + (uint32_t)(path - first))
             (void)path_wave_add(wave->scene, result_of(wave, (uint32_t)(path - wave->first)), pixel);
 }
 
 void wave_leave_pixels(const struct path_orders *orders) {
-    struct path_pixel *pixel = orders->pixels;
+    uint64_t pixel = 0;
     for (uint32_t i = 0; i < orders->count; i++)
         for (uint64_t k = path_order_pixels(&orders->all[i]); k > 0; k--)
-            (pixel++)->samples = orders->all[i].begin;
+            path_orders_pixel(orders, pixel++)->samples = orders->all[i].begin;
 }
 
 void wave_number_orders(const struct path_orders *orders, struct wave_order *out) {

@@ -21,9 +21,10 @@ struct wave {
     const struct path_scene *scene;
     const struct wave_order *orders;
     uint32_t order_count;
-    struct path_pixel *pixels; /* of all orders */
-    uint64_t first;            /* path of the wave */
-    uint32_t count;            /* of paths */
+    char *pixels;        /* of all orders */
+    uint64_t pixel_size; /* bytes */
+    uint64_t first;      /* path of the wave */
+    uint32_t count;      /* of paths */
     /* States of an even turn before shade, of an odd one from shade on; and the reverse. Where the states of the turn
      * are not, from shade on, is the light that they ask for. Room for `count`, as in all that follow. */
     char *states[2];

@@ -22,11 +22,16 @@ struct path_pixel {
     struct colour squares; /* of the weighted radiance of all samples */
     uint32_t samples;      /* sample number k belongs to half k % 2 */
     /* Only in records with these parts (enum path_part). */
+    float line;          /* the fraction of the pixel that black lines cover, 0..1 */
+    double seen_through; /* weighted sum of the shares of the samples that see the background */
+    /* Two thirds of the structure, which is left out where no sample has parts. */
     float features[2][PATH_FEATURES];       /* of the halves: weighted sums */
     struct colour light[PATH_LIGHT_GROUPS]; /* weighted sums of all samples */
-    double seen_through;                    /* weighted sum of the shares of the samples that see the background */
-    float line;                             /* the fraction of the pixel that black lines cover, 0..1 */
 };
+/* Bytes of a pixel whose samples have parts, or have none. */
+static inline size_t path_pixel_size(bool has_parts) {
+    return has_parts ? sizeof(struct path_pixel) : offsetof(struct path_pixel, features);
+}
 
 /* The record of films with these parts, a mask of enum path_part; and the mask of a record, 0 for records of other
  * integrators. */

@@ -273,6 +273,7 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
                         struct error *error) {
     const struct settings *settings = &renderer->job->settings;
     tracer->samples = settings_path_samples(settings);
+    tracer->has_parts = path_has_parts(settings);
     renderer->pass = (struct sample_pass){.end = tracer->samples};
     tracer->max_depth = settings->max_depth;
     tracer->roulette_depth = settings->roulette_depth;
@@ -417,29 +418,45 @@ static void count_of_device(struct worker *worker, const struct path_counts *cou
     state->clamped = state->clamped || counts->clamped;
 }
 
+static struct path_orders orders_of(const struct path_tracer *tracer, const struct device_work *work) {
+    return (struct path_orders){work->orders, work->count, work->pixels, path_pixel_size(tracer->has_parts)};
+}
+
 /* Orders for these samples of a part of the film, with the pixels as they are before. False: no memory. */
 static bool order_part(const struct path_tracer *tracer, struct worker *worker, const struct film *film,
                        const struct film_rectangle *part, struct sample_range range) {
     struct device_work *work = worker->for_device;
-    const struct path_orders before = {work->orders, work->count, NULL};
+    struct path_orders orders = orders_of(tracer, work);
     const struct path_order order = {part->x0, part->y0, part->x1, part->y1, range.begin, range.end};
-    const size_t first = (size_t)path_orders_pixels(&before), needed = first + (size_t)path_order_pixels(&order);
+    uint64_t pixel = path_orders_pixels(&orders);
+    const size_t needed = (size_t)(pixel + path_order_pixels(&order)) * orders.pixel_size;
     const struct contour *lines = tracer->contours ? &tracer->contours[worker->index] : NULL;
     if (needed > work->room) {
         const size_t room = needed > 2 * work->room ? needed : 2 * work->room;
-        struct path_pixel *pixels = mem_resize_array(work->pixels, room, sizeof *pixels);
+        void *pixels = mem_resize_array(work->pixels, room, 1);
         if (!pixels)
             return !(worker->scratch.failed = true);
-        work->pixels = pixels;
+        orders.pixels = work->pixels = pixels;
         work->room = room;
     }
     work->parts[work->count] = *part;
     work->orders[work->count++] = order;
-    struct path_pixel *pixel = work->pixels + first;
     for (uint32_t y = part->y0; y < part->y1; y++)
-        for (uint32_t x = part->x0; x < part->x1; x++)
-            *pixel++ = begin_pixel(tracer, film, lines, x, y, range.begin);
+        for (uint32_t x = part->x0; x < part->x1; x++) {
+            const struct path_pixel before = begin_pixel(tracer, film, lines, x, y, range.begin);
+            memcpy(path_orders_pixel(&orders, pixel++), &before, orders.pixel_size);
+        }
     return true;
+}
+
+/* A pixel as the film keeps it: parts that its samples do not have are as before. */
+static struct path_pixel whole_pixel(const struct path_orders *orders, uint64_t number, const struct film *film,
+                                     size_t at, uint32_t begin) {
+    struct path_pixel pixel = {.samples = 0};
+    if (begin > 0 && orders->pixel_size < sizeof pixel)
+        pixel = path_film_load(film, at);
+    memcpy(&pixel, path_orders_pixel(orders, number), orders->pixel_size);
+    return pixel;
 }
 
 /* Has the orders of the worker made. What the device leaves out the worker makes. plan: its part is of no use. False:
@@ -448,22 +465,25 @@ static bool make_orders(const struct path_tracer *tracer, struct renderer *rende
                         const struct sample_plan *plan) {
     const struct path_device *device = renderer->job->device;
     const struct device_work *work = worker->for_device;
-    const struct path_orders orders = {work->orders, work->count, work->pixels};
-    const struct path_pixel *pixel = work->pixels;
+    const struct path_orders orders = orders_of(tracer, work);
     struct path_counts counts = {0};
+    uint64_t number = 0;
     bool goes_on = device->make(device->context, &orders, &counts);
     count_of_device(worker, &counts);
     for (uint32_t i = 0; i < work->count && goes_on; i++) {
         const struct film_rectangle *part = &work->parts[i];
         const struct sample_range range = {work->orders[i].begin, work->orders[i].end};
         for (uint32_t y = part->y0; y < part->y1; y++)
-            for (uint32_t x = part->x0; x < part->x1 && goes_on; x++, pixel++) {
+            for (uint32_t x = part->x0; x < part->x1 && goes_on; x++, number++) {
                 const struct film_rectangle one = {x, y, x + 1, y + 1};
                 const struct sample_plan single = {plan->film, &one, plan->before, plan->expected};
-                if (pixel->samples == range.end)
-                    finish_pixel(plan->film, worker, x, y, pixel);
-                else
+                if (path_orders_pixel(&orders, number)->samples != range.end) {
                     goes_on = sample_row(tracer, renderer, worker, &single, y, range);
+                    continue;
+                }
+                const struct path_pixel pixel =
+                    whole_pixel(&orders, number, plan->film, pixel_index(plan->film, x, y), range.begin);
+                finish_pixel(plan->film, worker, x, y, &pixel);
             }
     }
     return goes_on;

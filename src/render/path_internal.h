@@ -32,6 +32,7 @@ struct path_tracer {
     double noise;                           /* a tile with this noise is finished; 0: every tile takes all samples */
     double clamp;                           /* the limit on components of a sample; 0: no limit */
     double bright;                          /* of struct path_pixel */
+    bool has_parts;                         /* path_has_parts */
     bool built;                             /* the lights are prepared */
     bool has_matter;                        /* media that affect rays, dispersion, or light that goes under surfaces */
     bool has_fillings;                      /* media inside invisible surfaces */

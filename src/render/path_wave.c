@@ -262,6 +262,10 @@ size_t path_scene_size(void) {
     return sizeof(struct path_scene);
 }
 
+size_t path_scene_pixel_size(const struct path_scene *scene) {
+    return path_pixel_size(scene->has_parts);
+}
+
 const char *path_scene_lacks(const struct path_tracer *tracer, const struct renderer *renderer) {
     const struct lens *lens = &renderer->camera.lens;
     if (renderer->job->world->primitive_count > DEVICE_SEARCH_PRIMITIVES)

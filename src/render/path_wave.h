@@ -9,6 +9,7 @@
 /* What paths read; the root of a bundle. */
 struct path_scene;
 size_t path_scene_size(void);
+size_t path_scene_pixel_size(const struct path_scene *scene); /* path_pixel_size of its orders */
 
 /* The samples begin .. end - 1 of the pixels of a rectangle of the picture, which have the samples before. */
 struct path_order {
@@ -22,13 +23,18 @@ static inline uint64_t path_order_paths(const struct path_order *order) {
     return path_order_pixels(order) * (order->end - order->begin);
 }
 
-/* Orders that are made together: together they fill a card. pixels: of one order after the other, each row by row. */
+/* Orders that are made together: together they fill a card. pixels: of one order after the other, each row by row, of
+ * so many bytes (path_pixel_size). */
 enum { PATH_ORDERS = 128 /* at most */ };
 struct path_orders {
     const struct path_order *all;
     uint32_t count;
-    struct path_pixel *pixels;
+    void *pixels;
+    size_t pixel_size;
 };
+static inline struct path_pixel *path_orders_pixel(const struct path_orders *orders, uint64_t i) {
+    return (struct path_pixel *)(void *)((char *)orders->pixels + i * orders->pixel_size);
+}
 uint64_t path_orders_pixels(const struct path_orders *orders);
 uint64_t path_orders_paths(const struct path_orders *orders);
 

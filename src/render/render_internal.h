@@ -65,8 +65,8 @@ struct device_work {
     struct film_rectangle parts[PATH_ORDERS];
     struct path_order orders[PATH_ORDERS]; /* of the parts, in their order */
     uint32_t count;
-    struct path_pixel *pixels; /* of all orders; owned, grows */
-    size_t room;               /* for pixels */
+    void *pixels; /* of all orders; owned, grows */
+    size_t room;  /* bytes for them */
 };
 
 /* How quickly the device of the job makes tiles, and the threads of the processor beside it. */

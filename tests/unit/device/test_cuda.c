@@ -252,7 +252,8 @@ static int play_launch(void *function, unsigned blocks, unsigned y, unsigned z, 
                    *(uint32_t *)arguments[3]);
     }
     if (kernel == ADD && card.is_wrong == WRONG_SAMPLE)
-        ((struct wave *)(uintptr_t) * (uint64_t *)arguments[0])->pixels->sums[0].r += 0x1p-30F;
+        ((struct path_pixel *)(void *)((struct wave *)(uintptr_t) * (uint64_t *)arguments[0])->pixels)->sums[0].r +=
+            0x1p-30F;
     if (kernel == ARITHMETIC && card.is_wrong == WRONG_SINE)
         (*(uint64_t **)arguments[0])[ARITHMETIC_NUMBERS - 1] ^= 1;
     enter(false);

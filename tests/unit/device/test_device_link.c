@@ -22,6 +22,7 @@
 #include <pthread.h>
 
 enum { WIDTH = 16, HEIGHT = 12 };
+#define SMALL_PIXEL path_pixel_size(false) /* samples have no parts */
 
 struct server {
     struct device_link *link;
@@ -105,7 +106,8 @@ TEST(a_device_process_survives_every_order_and_goes_on) {
         CHECK(slot != NULL);
         slot->count = bits(&random, 8) ? 1 + bits(&random, 3) : bits(&random, 2) ? UINT32_MAX - bits(&random, 9) : 0;
         bool fits = slot->count > 0 && slot->count < 4;
-        struct path_pixel *pixel = slot->pixels;
+        const struct path_orders orders = {slot->orders, slot->count, slot->pixels, SMALL_PIXEL};
+        uint64_t pixel = 0;
         memset(slot->pixels, i % 3 ? 0 : 0xa5, sizeof(struct path_pixel) * 3 * FILM_TILE * FILM_TILE);
         for (uint32_t k = 0; k < 3; k++) {
             slot->orders[k] = odd_order(&random);
@@ -113,7 +115,7 @@ TEST(a_device_process_survives_every_order_and_goes_on) {
         }
         for (uint32_t k = 0; fits && k < slot->count; k++)
             for (uint64_t n = path_order_pixels(&slot->orders[k]); n > 0; n--)
-                *pixel++ = (struct path_pixel){.samples = i % 2 ? slot->orders[k].begin : 77};
+                path_orders_pixel(&orders, pixel++)->samples = i % 2 ? slot->orders[k].begin : 77;
         atomic_store(&slot->state, SLOT_ASKED);
         pool_signal(&server.link->asked);
         while (atomic_load(&slot->state) != SLOT_MADE)
@@ -128,9 +130,12 @@ TEST(a_device_process_survives_every_order_and_goes_on) {
     struct device_client user = client;
     /* In two orders: rows above and below. */
     const struct path_order all[] = {{0, 0, WIDTH, 5, 0, 4}, {0, 5, WIDTH, HEIGHT, 0, 4}};
-    CHECK(device_client_make(&user, &(struct path_orders){all, 2, pixels}, &counts));
+    const struct path_orders orders = {all, 2, pixels, SMALL_PIXEL};
+    CHECK(device_client_make(&user, &orders, &counts));
     for (size_t i = 0; i < WIDTH * HEIGHT; i++) {
-        struct colour mean = path_pixel_mean(&pixels[i]), seen = stage_pixel(&s, i % WIDTH, (uint32_t)(i / WIDTH));
+        struct path_pixel pixel = {.samples = 0};
+        memcpy(&pixel, path_orders_pixel(&orders, i), SMALL_PIXEL);
+        struct colour mean = path_pixel_mean(&pixel), seen = stage_pixel(&s, i % WIDTH, (uint32_t)(i / WIDTH));
         CHECK((float)mean.r == (float)seen.r && (float)mean.b == (float)seen.b);
     }
     CHECK_EQ_INT((int64_t)counts.camera_rays, WIDTH * HEIGHT * 4);
@@ -148,7 +153,7 @@ TEST(a_render_process_does_not_wait_for_a_device_that_is_gone) {
     struct path_pixel pixels[WIDTH * HEIGHT] = {{.samples = 0}};
     struct path_counts counts = {0};
     const struct path_order order = {0, 0, WIDTH, HEIGHT, 0, 4};
-    CHECK(device_client_make(&client, &(struct path_orders){&order, 1, pixels}, &counts));
+    CHECK(device_client_make(&client, &(struct path_orders){&order, 1, pixels, SMALL_PIXEL}, &counts));
     CHECK(pixels[0].samples == 0 && counts.camera_rays == 0);
     end_server(&s, &server);
     CHECK(server.served);
@@ -163,25 +168,25 @@ TEST(an_order_is_made_for_the_newest_view_alone_and_a_damaged_one_ends_the_devic
     const struct path_order order = {0, 0, WIDTH, HEIGHT, 0, 4};
     struct path_pixel pixels[3][WIDTH * HEIGHT] = {{{.samples = 0}}};
     struct path_counts counts = {0};
-    CHECK(device_client_make(&client, &(struct path_orders){&order, 1, pixels[0]}, &counts) &&
+    CHECK(device_client_make(&client, &(struct path_orders){&order, 1, pixels[0], SMALL_PIXEL}, &counts) &&
           pixels[0][0].samples == 4);
     /* The view of the bundle once more, and then an order for the one before. */
     device_client_set_view(&client, &server.view);
-    CHECK(device_client_make(&client, &(struct path_orders){&order, 1, pixels[1]}, &counts));
+    CHECK(device_client_make(&client, &(struct path_orders){&order, 1, pixels[1], SMALL_PIXEL}, &counts));
     CHECK(memcmp(pixels[0], pixels[1], sizeof pixels[0]) == 0);
     client.view = 0;
-    CHECK(device_client_make(&client, &(struct path_orders){&order, 1, pixels[2]}, &counts) &&
+    CHECK(device_client_make(&client, &(struct path_orders){&order, 1, pixels[2], SMALL_PIXEL}, &counts) &&
           pixels[2][0].samples == 0);
     client.view = 7;
-    CHECK(device_client_make(&client, &(struct path_orders){&order, 1, pixels[2]}, &counts) &&
+    CHECK(device_client_make(&client, &(struct path_orders){&order, 1, pixels[2], SMALL_PIXEL}, &counts) &&
           pixels[2][0].samples == 0);
     client.view = 1;
-    CHECK(device_client_make(&client, &(struct path_orders){&order, 1, pixels[2]}, &counts) &&
+    CHECK(device_client_make(&client, &(struct path_orders){&order, 1, pixels[2], SMALL_PIXEL}, &counts) &&
           pixels[2][0].samples == 4);
     server.view.camera.eye.x = NAN;
     device_client_set_view(&client, &server.view);
     memset(pixels[2], 0, sizeof pixels[2]);
-    CHECK(device_client_make(&client, &(struct path_orders){&order, 1, pixels[2]}, &counts) &&
+    CHECK(device_client_make(&client, &(struct path_orders){&order, 1, pixels[2], SMALL_PIXEL}, &counts) &&
           pixels[2][0].samples == 0);
     char reason[DEVICE_REASON];
     device_link_reason(server.link, reason);

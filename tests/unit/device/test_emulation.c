@@ -65,13 +65,14 @@ static bool begin_losing(void *context, struct bundle *scene, bool *is_used, str
 }
 static bool make_losing(void *context, const struct path_orders *orders, struct path_counts *counts) {
     struct loser *loser = context;
-    struct path_pixel *pixel = orders->pixels;
+    uint64_t number = 0;
     if (!loser->inner.make(loser->inner.context, orders, counts))
         return false;
     for (uint32_t k = 0; k < orders->count; k++)
-        for (uint64_t i = 0; i < path_order_pixels(&orders->all[k]); i++, pixel++)
+        for (uint64_t i = 0; i < path_order_pixels(&orders->all[k]); i++, number++)
             if (i % 3 == 0) {
-                *pixel = (struct path_pixel){.samples = orders->all[k].begin, .sums = {{7, 7, 7}}};
+                const struct path_pixel lost = {.samples = orders->all[k].begin, .sums = {{7, 7, 7}}};
+                memcpy(path_orders_pixel(orders, number), &lost, orders->pixel_size);
                 loser->lost++;
             }
     return true;
@@ -151,11 +152,11 @@ static bool begin_counting(void *context, struct bundle *scene, bool *is_used, s
 }
 static bool make_counting(void *context, const struct path_orders *orders, struct path_counts *counts) {
     struct counter *counter = context;
-    const struct path_pixel *pixel = orders->pixels;
+    uint64_t number = 0;
     bool goes_on = counter->inner.make(counter->inner.context, orders, counts);
     for (uint32_t k = 0; k < orders->count; k++)
-        for (uint64_t i = 0; i < path_order_pixels(&orders->all[k]); i++, pixel++)
-            *(pixel->samples == orders->all[k].end ? &counter->whole : &counter->left) += 1;
+        for (uint64_t i = 0; i < path_order_pixels(&orders->all[k]); i++, number++)
+            *(path_orders_pixel(orders, number)->samples == orders->all[k].end ? &counter->whole : &counter->left) += 1;
     return goes_on;
 }
 

@@ -39,11 +39,11 @@ static bool make(void *context, const struct path_orders *orders, struct path_co
     struct viewed *viewed = context;
     const struct path_device inner = emulation_device(viewed->emulation);
     __atomic_fetch_add(&viewed->orders, 1, __ATOMIC_RELAXED);
-    const struct path_pixel *pixel = orders->pixels;
+    uint64_t number = 0;
     bool goes_on = inner.make(inner.context, orders, counts);
     for (uint32_t k = 0; k < orders->count; k++)
-        for (uint64_t i = 0; i < path_order_pixels(&orders->all[k]); i++, pixel++)
-            CHECK(pixel->samples == orders->all[k].end);
+        for (uint64_t i = 0; i < path_order_pixels(&orders->all[k]); i++, number++)
+            CHECK(path_orders_pixel(orders, number)->samples == orders->all[k].end);
     return goes_on;
 }
 
@@ -194,7 +194,7 @@ TEST(a_device_survives_every_view_that_it_takes) {
         taken++;
         memset(pixels, 0, sizeof pixels);
         const struct path_order order = {3, 5, 11, 13, 0, 1};
-        CHECK(inner.make(inner.context, &(struct path_orders){&order, 1, pixels}, &counts));
+        CHECK(inner.make(inner.context, &(struct path_orders){&order, 1, pixels, sizeof *pixels}, &counts));
     }
     CHECK(taken > TRIES / 10 && taken < TRIES);
     end_scene(&s, &viewed);
