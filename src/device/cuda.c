@@ -214,18 +214,20 @@ static bool divide_memory(struct cuda *cuda, size_t idle, struct error *error) {
     return true;
 }
 
-/* Whether operations and elementary functions of the card have the bits that those of this processor have. */
+/* Whether operations and elementary functions of the card have the bits that those of this processor have. Before the
+ * memory is divided: at the first launch the driver takes the stacks of all threads. */
 static bool try_arithmetic(struct cuda *cuda, struct error *error) {
     uint64_t *digests = mem_alloc(ARITHMETIC_NUMBERS * sizeof *digests);
-    const struct card_stream *stream = &cuda->streams[0];
+    struct card_stream own = {.taken = false};
     uint32_t same = 0;
     if (!digests)
         return error_no_memory(error, "a card");
-    bool ok =
-        fill_stream(cuda, &cuda->streams[0], error) &&
-        launch(cuda, stream, KERNEL_ARITHMETIC, ARITHMETIC_NUMBERS, 0, error) &&
-        CALL(cuda, error, download, digests, stream->pixels, ARITHMETIC_NUMBERS * sizeof *digests, stream->handle) &&
-        CALL(cuda, error, stream_wait, stream->handle);
+    cuda->lanes = ARITHMETIC_NUMBERS; /* until the memory is divided */
+    bool ok = CALL(cuda, error, stream_create, &own.handle, 1) &&
+              CALL(cuda, error, take, &own.pixels, ARITHMETIC_NUMBERS * sizeof *digests) &&
+              launch(cuda, &own, KERNEL_ARITHMETIC, ARITHMETIC_NUMBERS, 0, error) &&
+              CALL(cuda, error, download, digests, own.pixels, ARITHMETIC_NUMBERS * sizeof *digests, own.handle) &&
+              CALL(cuda, error, stream_wait, own.handle);
     while (ok && same < ARITHMETIC_NUMBERS && digests[same] == arithmetic_digest(same))
         same++;
     mem_free(digests);
@@ -295,7 +297,7 @@ bool cuda_open_scene(struct cuda *cuda, void *bytes, size_t size, const struct p
         return error_no_memory(error, "the scene for a card");
     memcpy(cuda->root, root, path_scene_size());
     if (!CALL(cuda, error, upload, cuda->scene_block, bytes, size, NULL) || !CALL(cuda, error, stream_wait, NULL) ||
-        !CALL(cuda, error, memory, &idle, &all) || !divide_memory(cuda, idle, error) || !try_arithmetic(cuda, error) ||
+        !try_arithmetic(cuda, error) || !CALL(cuda, error, memory, &idle, &all) || !divide_memory(cuda, idle, error) ||
         !try_samples(cuda, here, error) || (cuda->measures && !measure(cuda, error)))
         return false;
     struct device_statistics *statistics = &cuda->statistics;
@@ -391,7 +393,7 @@ static bool run_orders(struct cuda *cuda, struct card_stream *stream, const stru
         wave.count = paths - wave.first < limit ? (uint32_t)(paths - wave.first) : limit;
         ok = run_wave(cuda, stream, &wave, error);
     }
-    ok = ok && launch(cuda, stream, KERNEL_FINISH, 1, cuda->lanes, error) &&
+    ok = ok && launch(cuda, stream, KERNEL_FINISH, cuda->lanes, cuda->lanes, error) &&
          CALL(cuda, error, download, &wave, stream->wave, sizeof wave, stream->handle) &&
          CALL(cuda, error, stream_wait, stream->handle) &&
          CALL(cuda, error, download, orders->pixels, stream->pixels, size, stream->handle) &&

@@ -123,15 +123,13 @@ void kernel_add(uint64_t wave, uint64_t lanes, uint32_t crossings) {
 /* count: of lanes. */
 void kernel_finish(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t count) {
     struct wave *w = (struct wave *)(uintptr_t)wave;
-    if (thread_index() != 0)
-        return;
-    w->counts = (struct path_counts){0};
-    for (uint32_t i = 0; i < count; i++) {
+    for (uint32_t i = thread_index(); i < count; i += thread_count()) {
         const char *lane = (const char *)(uintptr_t)lanes + i * path_lane_size(crossings);
         const struct path_counts made = path_lane_counts((const struct path_lane *)(const void *)lane);
-        path_counts_add(&w->counts, &made);
+        wave_count(w, &made);
     }
-    w->met_fault = path_scene_met_fault(w->scene);
+    if (thread_index() == 0)
+        w->met_fault = path_scene_met_fault(w->scene);
 }
 
 #endif

@@ -29,6 +29,9 @@ uint64_t __atomic_load_8(const volatile void *from, int order) {
 uint32_t __atomic_fetch_add_4(volatile void *at, uint32_t more, int order) {
     return (void)order, (uint32_t)__nvvm_atom_add_gen_i((int *)at, (int)more);
 }
+uint64_t __atomic_fetch_add_8(volatile void *at, uint64_t more, int order) {
+    return (void)order, (uint64_t)__nvvm_atom_add_gen_ll((long long *)at, (long long)more);
+}
 bool __atomic_compare_exchange_8(volatile void *at, void *expected, uint64_t wanted, int order, int order_else) {
     uint64_t *own = expected, before = *own;
     (void)order, (void)order_else;

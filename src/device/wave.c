@@ -184,6 +184,22 @@ void wave_add(struct wave *wave, uint32_t i) {
             (void)path_wave_add(wave->scene, result_of(wave, (uint32_t)(path - wave->first)), pixel);
 }
 
+static void add(uint64_t *to, uint64_t more) {
+    (void)__atomic_fetch_add(to, more, __ATOMIC_RELAXED);
+}
+
+void wave_count(struct wave *wave, const struct path_counts *made) {
+    struct path_counts *counts = &wave->counts;
+    add(&counts->camera_rays, made->camera_rays);
+    add(&counts->reflected_rays, made->reflected_rays);
+    add(&counts->refracted_rays, made->refracted_rays);
+    add(&counts->shadow_rays, made->shadow_rays);
+    add(&counts->hits, made->hits);
+    add(&counts->medium_events, made->medium_events);
+    if (made->clamped)
+        __atomic_store_n(&counts->clamped, true, __ATOMIC_RELAXED);
+}
+
 void wave_leave_pixels(const struct path_orders *orders) {
     uint64_t pixel = 0;
     for (uint32_t i = 0; i < orders->count; i++)

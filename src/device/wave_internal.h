@@ -67,6 +67,8 @@ void wave_clear_next(struct wave *wave, uint32_t turn);
  * the end. */
 void wave_add(struct wave *wave, uint32_t i);
 uint32_t wave_pixels(const struct wave *wave);
+/* Adds the counts of a lane to those of the wave. */
+void wave_count(struct wave *wave, const struct path_counts *made);
 /* From a fault of the scene on, threads make all pixels, and note where it is. */
 void wave_leave_pixels(const struct path_orders *orders);
 /* out: orders->count of them. */
