@@ -49,11 +49,11 @@ void pool_signal(struct pool_event *event);
  * after that many seconds (below 1). */
 void pool_wait(struct pool_event *event, uint32_t seen, double seconds);
 
-/* Threads beside those of a pool, for what waits and hardly computes: each runs fn for one of the items 0 .. count - 1,
+/* Threads beside those of a pool, for what mostly waits: each runs fn for one of the items 0 .. count - 1,
  * as worker first_worker + item. NULL: none could be started; fewer are no error. */
 struct pool_threads;
 struct pool_threads *pool_threads_start(uint32_t count, int first_worker, pool_function *fn, void *context);
-void pool_threads_join(struct pool_threads *threads); /* until all have ended; or NULL */
+void pool_threads_join(struct pool_threads *threads); /* until all have ended, without polls; or NULL */
 
 /* Counts of the current run, or of the last one; for the thread that calls pool_run, and its poll. */
 struct pool_progress {

@@ -364,7 +364,7 @@ static bool run_wave(struct cuda *cuda, const struct card_stream *stream, struct
     const uint32_t limit = atomic_load(&cuda->limit);
     if (longest > longest_launch && limit > SMALLEST_WAVE)
         atomic_store(&cuda->limit, limit / 2);
-    else if (longest < shortest_launch && limit < cuda->room)
+    else if (longest < shortest_launch && wave->count >= limit && limit < cuda->room)
         atomic_store(&cuda->limit, limit < cuda->room / 2 ? 2 * limit : cuda->room);
     return ok;
 }

@@ -21,7 +21,7 @@ struct slot {
     uint32_t count; /* orders */
     struct path_order orders[PATH_ORDERS];
     struct path_counts counts;
-    struct path_pixel pixels[PATH_ORDERS * FILM_TILE * FILM_TILE]; /* or smaller ones (path_pixel_size) */
+    char pixels[] __attribute__((aligned(16)));
 };
 
 /* Closed: before it was ready, or after. */
@@ -34,15 +34,23 @@ struct device_link {
     _Atomic uint64_t launches;
     _Atomic uint32_t view_number; /* it is stored before the view is written */
     struct path_view view;
-    struct slot slots[];
+    char slots[] __attribute__((aligned(64))); /* each with its room */
 };
 
 /* A request to stop is noticed so soon, in seconds. */
 static const double patience = 0.01;
 static const char damaged_view[] = "the data of a view is damaged";
 
-size_t device_link_size(uint32_t slots) {
-    return sizeof(struct device_link) + slots * sizeof(struct slot);
+static size_t slot_size(struct device_slots slots) {
+    return (sizeof(struct slot) + slots.room + 63) / 64 * 64;
+}
+
+size_t device_link_size(struct device_slots slots) {
+    return sizeof(struct device_link) + slots.count * slot_size(slots);
+}
+
+static struct slot *slot_of(struct device_link *link, struct device_slots slots, uint32_t i) {
+    return (struct slot *)(void *)(link->slots + i * slot_size(slots));
 }
 
 void device_link_close(struct device_link *link) {
@@ -99,7 +107,7 @@ struct service_view {
 
 struct service {
     struct device_link *link;
-    uint32_t slots;
+    struct device_slots slots;
     struct cuda *cuda; /* or NULL */
     struct path_device device;
     struct emulation *emulation;
@@ -113,6 +121,7 @@ static void take_view(const struct service *service, uint32_t number) {
     struct path_view view;
     (void)pthread_rwlock_wrlock(&own->lock);
     memcpy(&view, &link->view, sizeof view);
+    atomic_thread_fence(memory_order_acquire);
     if (own->number != number && atomic_load(&link->view_number) == number && !own->is_damaged) {
         if (emulation_set_view(service->emulation, &view)) {
             own->number = number;
@@ -158,8 +167,8 @@ static bool copy_orders(const struct slot *slot, struct path_order *copy, uint32
 }
 
 static bool make_any(const struct service *service) {
-    for (uint32_t i = 0; i < service->slots; i++) {
-        struct slot *slot = &service->link->slots[i];
+    for (uint32_t i = 0; i < service->slots.count; i++) {
+        struct slot *slot = slot_of(service->link, service->slots, i);
         uint32_t asked = SLOT_ASKED, worked = SLOT_WORKED;
         if (!atomic_compare_exchange_strong(&slot->state, &asked, SLOT_WORKED))
             continue;
@@ -168,7 +177,8 @@ static bool make_any(const struct service *service) {
         slot->counts = (struct path_counts){0};
         if (copy_orders(slot, copy, &orders.count) && lock_view(service, slot->view)) {
             orders.pixel_size = path_scene_pixel_size(emulation_scene(service->emulation));
-            (void)service->device.make(service->device.context, &orders, &slot->counts);
+            if (path_orders_pixels(&orders) * orders.pixel_size <= service->slots.room)
+                (void)service->device.make(service->device.context, &orders, &slot->counts);
             (void)pthread_rwlock_unlock(&service->view->lock);
         }
         if (service->cuda)
@@ -206,10 +216,10 @@ static bool open_scene(struct emulation *emulation, struct cuda *cuda, void *sce
     return ok;
 }
 
-bool device_link_serve(struct device_link *link, struct cuda *cuda, void *scene, size_t size, uint32_t slots,
+bool device_link_serve(struct device_link *link, struct cuda *cuda, void *scene, size_t size, struct device_slots slots,
                        struct error *error) {
     char ignored[256];
-    struct pool *pool = pool_create((int)(cuda ? CUDA_STREAMS : slots), ignored);
+    struct pool *pool = pool_create((int)(cuda ? CUDA_STREAMS : slots.count), ignored);
     struct emulation *emulation = pool ? emulation_create(pool, 0, 0) : NULL;
     bool ok = emulation && open_scene(emulation, cuda, scene, size, error);
     if (!emulation)
@@ -250,6 +260,7 @@ bool device_client_is_ready(const struct device_client *client) {
 
 void device_client_set_view(struct device_client *client, const struct path_view *view) {
     atomic_store(&client->link->view_number, ++client->view);
+    atomic_thread_fence(memory_order_release);
     client->link->view = *view;
 }
 
@@ -257,8 +268,8 @@ void device_client_set_view(struct device_client *client, const struct path_view
 static struct slot *take_slot(const struct device_client *client) {
     while (atomic_load(&client->link->state) == LINK_READY && !pool_cancelled(client->pool)) {
         const uint32_t seen = atomic_load(&client->link->answered.signals);
-        for (uint32_t i = 0; i < client->slots; i++) {
-            struct slot *slot = &client->link->slots[i];
+        for (uint32_t i = 0; i < client->slots.count; i++) {
+            struct slot *slot = slot_of(client->link, client->slots, i);
             uint32_t idle = SLOT_FREE;
             if (atomic_compare_exchange_strong(&slot->state, &idle, SLOT_TAKEN))
                 return slot;
@@ -279,7 +290,7 @@ static void leave_slot(struct slot *slot) {
 bool device_client_make(struct device_client *client, const struct path_orders *orders, struct path_counts *counts) {
     struct device_link *link = client->link;
     const size_t size = (size_t)path_orders_pixels(orders) * orders->pixel_size;
-    struct slot *slot = take_slot(client);
+    struct slot *slot = size <= client->slots.room ? take_slot(client) : NULL;
     if (!slot)
         return !pool_cancelled(client->pool);
     slot->view = client->view;

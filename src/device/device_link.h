@@ -8,8 +8,12 @@
 #include "render/path_wave.h"
 
 struct device_link;
-/* Bytes for so many groups of orders at a time; they are zero at the start. */
-size_t device_link_size(uint32_t slots);
+/* So many groups of orders at a time, each with so many bytes for pixels. */
+struct device_slots {
+    uint32_t count, room;
+};
+/* Bytes; they are zero at the start. */
+size_t device_link_size(struct device_slots slots);
 /* Ends the exchange. Calls that wait for the other process return, and later calls do not wait. Both processes may
  * close the link. */
 void device_link_close(struct device_link *link);
@@ -18,7 +22,7 @@ void device_link_close(struct device_link *link);
  * stream of the card, or for each slot. cuda: the card; NULL: the emulation. False: the bundle or a view is damaged, no
  * memory, or the card was lost; what is not made then, threads make. */
 struct cuda;
-bool device_link_serve(struct device_link *link, struct cuda *cuda, void *scene, size_t size, uint32_t slots,
+bool device_link_serve(struct device_link *link, struct cuda *cuda, void *scene, size_t size, struct device_slots slots,
                        struct error *error);
 /* Whether it has begun to make orders. */
 bool device_link_was_ready(struct device_link *link);
@@ -35,7 +39,7 @@ struct device_statistics device_link_statistics(struct device_link *link);
 struct device_client {
     struct device_link *link;
     const struct pool *pool;
-    uint32_t slots;
+    struct device_slots slots;
     uint32_t view; /* the number of the last one; 0: that of the bundle */
 };
 bool device_client_is_ready(const struct device_client *client);

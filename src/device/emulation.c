@@ -122,9 +122,14 @@ static bool make(void *context, const struct path_orders *orders, struct path_co
     wave_number_orders(orders, numbered);
     void *block = mem_alloc_aligned(16, wave_lay(&wave, scene, 0, room));
     void *memory = mem_alloc_aligned(16, path_lane_size(crossings));
-    bool goes_on = block && memory;
+    if (!block || !memory) { /* threads make them */
+        mem_free(memory);
+        mem_free(block);
+        return true;
+    }
+    bool goes_on = true;
     (void)wave_lay(&wave, scene, (uint64_t)(uintptr_t)block, room);
-    struct path_lane *lane = goes_on ? path_lane_init(memory, scene, crossings) : NULL;
+    struct path_lane *lane = path_lane_init(memory, scene, crossings);
     for (; goes_on && wave.first < paths; wave.first += wave.count) {
         const uint64_t left = paths - wave.first;
         wave.count = left < room ? (uint32_t)left : room;
@@ -134,10 +139,8 @@ static bool make(void *context, const struct path_orders *orders, struct path_co
         wave_leave_pixels(orders);
     for (uint64_t i = 0; goes_on && i < path_orders_pixels(orders); i++)
         check_numbers(path_orders_pixel(orders, i), orders->pixel_size == path_pixel_size(true));
-    if (lane) {
-        const struct path_counts made = path_lane_counts(lane);
-        path_counts_add(counts, &made);
-    }
+    const struct path_counts made = path_lane_counts(lane);
+    path_counts_add(counts, &made);
     mem_free(memory);
     mem_free(block);
     return goes_on;

@@ -197,7 +197,7 @@ void wave_count(struct wave *wave, const struct path_counts *made) {
     add(&counts->hits, made->hits);
     add(&counts->medium_events, made->medium_events);
     if (made->clamped)
-        __atomic_store_n(&counts->clamped, true, __ATOMIC_RELAXED);
+        (void)__atomic_fetch_add(&counts->clamped, 1, __ATOMIC_RELAXED);
 }
 
 void wave_leave_pixels(const struct path_orders *orders) {

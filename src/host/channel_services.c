@@ -175,8 +175,7 @@ static void link_model_end(void *context) {
 }
 
 /* Asks for memory; its descriptor, or -1. */
-static int ask_for_device(struct channel_services *link, uint64_t size, uint32_t slots, struct error *error) {
-    const struct device_request request = {size, slots};
+static int ask_for_device(struct channel_services *link, struct device_request request, struct error *error) {
     struct message message;
     if (!channel_send(&link->channel, MESSAGE_DEVICE, &request, sizeof request, -1) ||
         channel_receive(&link->channel, &message) != CHANNEL_MESSAGE || message.kind != MESSAGE_FILM) {
@@ -190,17 +189,18 @@ static int ask_for_device(struct channel_services *link, uint64_t size, uint32_t
     return message.body.answer.ok ? message.descriptor : -1;
 }
 
-static bool link_device(void *context, const struct bundle *scene, uint32_t slots, struct share *orders,
+static bool link_device(void *context, const struct bundle *scene, uint32_t slots, uint32_t room, struct share *orders,
                         struct error *error) {
     struct channel_services *link = context;
     struct share memory;
-    int descriptor = ask_for_device(link, bundle_size(scene), slots, error);
+    int descriptor = ask_for_device(link, (struct device_request){bundle_size(scene), slots, room}, error);
     if (descriptor < 0 || !share_attach(&memory, descriptor, bundle_size(scene), error))
         return false;
     bundle_write(scene, memory.block);
     share_destroy(&memory);
-    descriptor = ask_for_device(link, 0, slots, error);
-    return descriptor >= 0 && share_attach(orders, descriptor, device_link_size(slots), error);
+    descriptor = ask_for_device(link, (struct device_request){0, slots, room}, error);
+    return descriptor >= 0 &&
+           share_attach(orders, descriptor, device_link_size((struct device_slots){slots, room}), error);
 }
 
 static void link_line(void *context, enum line_kind kind, const char *text) {

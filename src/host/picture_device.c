@@ -63,11 +63,11 @@ static uint32_t waiting_threads(const struct picture_device *device) {
 static bool begin(void *context, struct bundle *scene, bool *is_used, struct error *error) {
     struct picture_device *device = context;
     const struct host_services *services = device->services;
-    const uint32_t slots = waiting_threads(device);
+    const struct device_slots slots = {waiting_threads(device), device->room};
     device->has_begun = true;
     if (!services->device)
         return begin_here(device, scene, is_used, error);
-    if (!services->device(services->context, scene, slots, &device->memory, error))
+    if (!services->device(services->context, scene, slots.count, slots.room, &device->memory, error))
         return false;
     device->client = (struct device_client){device->memory.block, device->pool, slots, 0};
     *is_used = true;
@@ -79,6 +79,7 @@ static bool begin(void *context, struct bundle *scene, bool *is_used, struct err
         return true;
     char reason[DEVICE_REASON];
     device_link_reason(device->memory.block, reason);
+    device->is_absent = true;
     return go_without(device, reason[0] ? reason : "the device process is gone", error);
 }
 
@@ -147,6 +148,7 @@ void picture_device_forget(struct picture_device *device) {
                                       .pool = device->pool,
                                       .kind = device->kind,
                                       .in_window = device->in_window,
+                                      .room = device->room,
                                       .is_absent = device->is_absent,
                                       .was_reported = device->was_reported};
 }
@@ -175,16 +177,28 @@ static bool leave(void *context, const char *what, struct error *error) {
     return true;
 }
 
-bool picture_device_init(struct picture_device *device, enum integrator_kind integrator, struct path_device *out,
+/* Tiles that a thread orders in a go: a card gets the whole film from all threads together. */
+static uint32_t tiles_at_once(const struct picture_device *device, const struct film *film) {
+    enum { OF_EMULATION = 4 };
+    const uint32_t waiting = waiting_threads(device), share = (film_tile_count(film) + waiting - 1) / waiting;
+    const uint32_t limit = device->kind == DEVICE_EMULATE ? OF_EMULATION : PATH_ORDERS;
+    return share < limit ? share : limit;
+}
+
+bool picture_device_init(struct picture_device *device, const struct render_job *job, struct path_device *out,
                          struct error *error) {
+    const uint32_t tiles = tiles_at_once(device, job->film);
+    const bool has_parts = (path_film_parts(job->film->record) & (PATH_PART_FEATURES | PATH_PART_LIGHT)) != 0;
+    device->room = tiles * FILM_TILE * FILM_TILE * (uint32_t)path_pixel_size(has_parts);
     *out = (struct path_device){.leave = leave,
                                 .is_worth = device->kind == DEVICE_AUTO ? is_worth : NULL,
                                 .take_view = device->in_window ? take_view : NULL,
                                 .begin = begin,
                                 .make = make,
                                 .context = device,
-                                .waiting = device->kind == DEVICE_EMULATE ? 0 : waiting_threads(device)};
-    return integrator == INTEGRATOR_PATH || leave(device, "integrator but path", error);
+                                .waiting = device->kind == DEVICE_EMULATE ? 0 : waiting_threads(device),
+                                .tiles = tiles};
+    return job->settings.integrator == INTEGRATOR_PATH || leave(device, "integrator but path", error);
 }
 
 void picture_device_end(struct picture_device *device) {

@@ -40,7 +40,7 @@ bool picture_in_window(struct picture_work *work, double build_seconds, struct e
     struct path_device maker;
     work->job.world = &work->world;
     if (device.kind != DEVICE_CPU && work->job.settings.integrator == INTEGRATOR_PATH) {
-        (void)picture_device_init(&device, INTEGRATOR_PATH, &maker, error);
+        (void)picture_device_init(&device, &work->job, &maker, error);
         work->job.device = &maker;
     }
     struct preview_session preview = {.services = process->services,

@@ -196,12 +196,13 @@ static bool render_picture(struct picture_work *work, struct error *error) {
         .services = process->services, .pool = process->pool, .kind = (enum device)process->options->device};
     struct path_device maker;
     bool ok = true;
-    if (process->options->device != DEVICE_CPU) {
-        ok = picture_device_init(&device, work->job.settings.integrator, &maker, error);
+    if (process->options->device != DEVICE_CPU && !process->lacks_device) {
+        ok = picture_device_init(&device, &work->job, &maker, error);
         work->job.device = &maker;
     }
     ok = ok && render_run(&work->job, process->pool, &work->report.rays, error);
     work->job.device = NULL;
+    process->lacks_device = process->lacks_device || device.is_absent;
     picture_device_end(&device);
     return ok && overlay_draw(&work->job, process->pool, error);
 }

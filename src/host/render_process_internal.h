@@ -45,6 +45,7 @@ struct render_process {
     struct radiosity_store store;    /* of solutions */
     const char *picture_file;        /* of the current picture, as the script wrote it */
     bool baked;                      /* its light is written */
+    bool lacks_device;               /* --device auto found none: it is not sought again */
     struct digest rendered;          /* picture_work.shows of the last picture that was rendered */
     struct scene_writer *errors;     /* what scripts write to standard error */
     uint64_t pictures;               /* of this run of the scripts, including those that cannot be rendered */

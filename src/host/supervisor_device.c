@@ -33,7 +33,7 @@ static struct cuda *open_card(struct cuda_calls *calls, bool measures, struct er
 
 /* After the fork. The process needs two pieces of memory and its threads, or the files of a driver that are open:
  * everything else is taken away before it looks at the scene, which a render process has written. */
-static _Noreturn void run_as_device(struct supervisor *supervisor, pid_t parent, uint32_t slots) {
+static _Noreturn void run_as_device(struct supervisor *supervisor, pid_t parent, struct device_slots slots) {
     const bool is_card = supervisor->options->device != DEVICE_EMULATE;
     struct cuda_calls calls;
     struct cuda *cuda = NULL;
@@ -57,7 +57,7 @@ static _Noreturn void run_as_device(struct supervisor *supervisor, pid_t parent,
     _exit(ok ? 0 : (int)error.kind);
 }
 
-static bool start(struct supervisor *supervisor, uint32_t slots, struct error *error) {
+static bool start(struct supervisor *supervisor, struct device_slots slots, struct error *error) {
     struct device_process *device = &supervisor->device;
     if (!share_freeze(device->scene))
         return error_set(error, ERROR_MACHINE, "the memory of a scene cannot be sealed: %s", strerror(errno));
@@ -88,7 +88,7 @@ void supervisor_answer_device(struct supervisor *supervisor, const struct device
         descriptor = device->scene = share_create_open((size_t)request->size, &error);
         ok = device->asked = descriptor >= 0;
     } else {
-        ok = start(supervisor, request->slots, &error);
+        ok = start(supervisor, (struct device_slots){request->slots, request->room}, &error);
         descriptor = ok ? device->link.descriptor : -1;
     }
     supervisor_send_answer(supervisor, MESSAGE_FILM, ok, false, &error, descriptor);

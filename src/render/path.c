@@ -415,7 +415,7 @@ static void count_of_device(struct worker *worker, const struct path_counts *cou
     state->shadow_rays += counts->shadow_rays;
     state->hits += counts->hits;
     state->medium_events += counts->medium_events;
-    state->clamped = state->clamped || counts->clamped;
+    state->clamped = state->clamped || counts->clamped != 0;
 }
 
 static struct path_orders orders_of(const struct path_tracer *tracer, const struct device_work *work) {
@@ -459,6 +459,12 @@ static struct path_pixel whole_pixel(const struct path_orders *orders, uint64_t 
     return pixel;
 }
 
+/* Before the first sample of a part. False: stopped. */
+static bool find_contours(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
+                          const struct film_rectangle *part, uint32_t begin) {
+    return !tracer->contours || begin > 0 || contour_find(&tracer->contours[worker->index], renderer, worker, part);
+}
+
 /* Has the orders of the worker made. What the device leaves out the worker makes. plan: its part is of no use. False:
  * stopped. */
 static bool make_orders(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
@@ -468,6 +474,7 @@ static bool make_orders(const struct path_tracer *tracer, struct renderer *rende
     const struct path_orders orders = orders_of(tracer, work);
     struct path_counts counts = {0};
     uint64_t number = 0;
+    uint32_t lined = work->count - 1; /* the part of which the worker has the contours */
     bool goes_on = device->make(device->context, &orders, &counts);
     count_of_device(worker, &counts);
     for (uint32_t i = 0; i < work->count && goes_on; i++) {
@@ -478,7 +485,9 @@ static bool make_orders(const struct path_tracer *tracer, struct renderer *rende
                 const struct film_rectangle one = {x, y, x + 1, y + 1};
                 const struct sample_plan single = {plan->film, &one, plan->before, plan->expected};
                 if (path_orders_pixel(&orders, number)->samples != range.end) {
-                    goes_on = sample_row(tracer, renderer, worker, &single, y, range);
+                    goes_on = i == lined || find_contours(tracer, renderer, worker, part, range.begin);
+                    lined = i;
+                    goes_on = goes_on && sample_row(tracer, renderer, worker, &single, y, range);
                     continue;
                 }
                 const struct path_pixel pixel =
@@ -592,8 +601,7 @@ bool path_tracer_render(const struct path_tracer *tracer, struct renderer *rende
                         const struct film_rectangle *part) {
     const struct sample_pass *pass = &renderer->pass;
     bool kept = worker->tile_state && film_tile_is_begun(atomic_load(worker->tile_state));
-    if (tracer->contours && pass->begin == 0 && !kept &&
-        !contour_find(&tracer->contours[worker->index], renderer, worker, part))
+    if (!kept && !find_contours(tracer, renderer, worker, part, pass->begin))
         return false;
     if (tracer->noise > 0)
         return sample_until_quiet(tracer, renderer, worker, part);
@@ -611,8 +619,7 @@ bool path_tracer_render_by_device(const struct path_tracer *tracer, struct rende
     atomic_store_explicit(&renderer->unsatisfied, true, memory_order_relaxed);
     for (uint32_t i = 0; i < count; i++) {
         const struct film_rectangle part = work->parts[i];
-        if ((tracer->contours && range.begin == 0 &&
-             !contour_find(&tracer->contours[worker->index], renderer, worker, &part)) ||
+        if (!find_contours(tracer, renderer, worker, &part, range.begin) ||
             !order_part(tracer, worker, plan.film, &part, range))
             return false;
     }

@@ -101,7 +101,7 @@ void path_counts_add(struct path_counts *to, const struct path_counts *counts) {
     to->shadow_rays += counts->shadow_rays;
     to->hits += counts->hits;
     to->medium_events += counts->medium_events;
-    to->clamped = to->clamped || counts->clamped;
+    to->clamped = to->clamped != 0 || counts->clamped != 0;
 }
 
 struct path_counts path_lane_counts(const struct path_lane *lane) {

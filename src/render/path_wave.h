@@ -41,7 +41,7 @@ uint64_t path_orders_paths(const struct path_orders *orders);
 /* What a worker counts. */
 struct path_counts {
     uint64_t camera_rays, reflected_rays, refracted_rays, shadow_rays, hits, medium_events;
-    bool clamped;
+    uint32_t clamped; /* not 0: some light was */
 };
 void path_counts_add(struct path_counts *to, const struct path_counts *counts);
 
@@ -136,6 +136,7 @@ struct path_device {
     /* Threads that wait for orders, beside those of the processor, which make tiles, too. 0: the threads of the
      * processor wait, and make nothing. */
     uint32_t waiting;
+    uint32_t tiles; /* that a thread orders in a go; 0: PATH_ORDERS, which is the most */
 };
 
 #endif

@@ -164,19 +164,21 @@ static uint32_t waiting_workers(const struct renderer *renderer) {
     return count;
 }
 
-/* So many tiles at once that a card is full, and that at the end all workers have some. */
+/* So many tiles at once that a card is full, with the one that is taken; fewer towards the end, so that all workers have
+ * some. */
 static uint32_t tiles_at_once(struct renderer *renderer) {
     static const double paths = 1 << 22;
+    const struct path_device *device = renderer->job->device;
     const double samples = renderer->pass.end - renderer->pass.begin;
-    const double share = work_queue_left(&renderer->queue) / waiting_workers(renderer);
-    const double count = math_min(math_min(share, paths / (samples * FILM_TILE * FILM_TILE)), PATH_ORDERS);
-    return (uint32_t)math_max(count, 1);
+    const double share = (work_queue_left(&renderer->queue) + 1) / waiting_workers(renderer);
+    const double count = math_min(share, paths / (samples * FILM_TILE * FILM_TILE));
+    return (uint32_t)math_max(math_min(count, device->tiles > 0 ? device->tiles : PATH_ORDERS), 1);
 }
 
 /* Takes items; those that are not to be made, or are empty, are given back at once. */
 static enum work_answer take_for_device(struct renderer *renderer, struct device_work *work) {
-    const uint32_t limit = tiles_at_once(renderer);
     enum work_answer answer = WORK_HERE;
+    uint32_t limit = 1;
     work->count = 0;
     while (answer == WORK_HERE && work->count < limit) {
         struct work_item *item = &work->taken[work->count].item;
@@ -184,6 +186,7 @@ static enum work_answer take_for_device(struct renderer *renderer, struct device
         answer = work_queue_take(&renderer->queue, work->count == 0 ? work_patience : 0, item);
         if (answer != WORK_HERE)
             continue;
+        limit = limit > 1 ? limit : tiles_at_once(renderer);
         work->parts[work->count] = work_item_part(film_tile_rectangle(renderer->job->film, item->tile), item);
         if (!claim(renderer, item, before))
             give_back(renderer, item, WORK_SKIPPED);
@@ -198,6 +201,8 @@ static enum work_answer take_for_device(struct renderer *renderer, struct device
 static enum work_answer work_for_device(struct renderer *renderer, struct worker *worker) {
     struct device_work *work = worker->for_device;
     const enum work_answer answer = take_for_device(renderer, work);
+    const struct sample_pass *pass = &renderer->pass;
+    const double share = (pass->end - pass->begin) / (double)(pass->open ? pass->limit : pass->end);
     const uint32_t count = work->count;
     const double begun = clock_now();
     if (count == 0)
@@ -214,7 +219,7 @@ static enum work_answer work_for_device(struct renderer *renderer, struct worker
         const struct work_item *item = &work->taken[i].item;
         const struct film_rectangle tile = film_tile_rectangle(renderer->job->film, item->tile);
         if (whole)
-            renderer_tile_was_made(renderer, item->tile, area(work_item_part(tile, item)) / area(tile),
+            renderer_tile_was_made(renderer, item->tile, share * area(work_item_part(tile, item)) / area(tile),
                                    (worker->tile_ended - begun) / count);
         give_back(renderer, item, end_item(renderer, item, whole, work->taken[i].before));
     }
@@ -290,6 +295,7 @@ static bool do_work(struct renderer *renderer, struct render_statistics *statist
                                        : NULL;
     bool whole = pool_run(renderer->pool, (uint32_t)workers, work, renderer);
     pool_threads_join(threads);
+    whole = whole && !pool_cancelled(renderer->pool);
     work_queue_destroy(queue);
     double ended = clock_now();
     for (uint32_t i = 0; i < queue->tail && !whole; i++) { /* those of which quarters are missing */

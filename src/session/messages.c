@@ -64,7 +64,8 @@ bool message_is_valid(const struct message *message) {
                ends_with_zero(message->body.model.file, sizeof message->body.model.file);
     case MESSAGE_DEVICE:
         return message->size == sizeof message->body.device && message->body.device.slots >= 1 &&
-               message->body.device.slots <= DEVICE_SLOTS && message->body.device.size <= SIZE_MAX / 2;
+               message->body.device.slots <= DEVICE_SLOTS && message->body.device.room <= DEVICE_ROOM &&
+               message->body.device.size <= SIZE_MAX / 2;
     case MESSAGE_MODEL_WRITE:
     case MESSAGE_MODEL_END:
     case MESSAGE_ABANDON:

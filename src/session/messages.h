@@ -103,11 +103,11 @@ struct picture_report {
 };
 
 /* size: bytes of the bundle of a scene, which come first; 0: they are there, a device process is to begin, and so many
- * orders are to be made at a time. */
-enum { DEVICE_SLOTS = 1024 };
+ * groups of orders are to be made at a time, each with so many bytes for pixels. */
+enum { DEVICE_SLOTS = 1024, DEVICE_ROOM = 1 << 26 };
 struct device_request {
     uint64_t size;
-    uint32_t slots; /* 1 to DEVICE_SLOTS */
+    uint32_t slots, room; /* 1 to DEVICE_SLOTS, and at most DEVICE_ROOM */
 };
 
 struct message_answer {

@@ -39,9 +39,11 @@ struct host_services {
     void (*model_end)(void *context);
     /* The same question for MODEL_SOLUTION; adds the bytes that were kept if they are of the same scene. */
     bool (*solution)(void *context, const struct model_request *request, struct list *bytes, struct error *error);
-    /* A device process for the scene, which makes so many orders at a time; *link: the memory that it shares
-     * (device/device_link.h). NULL: there are no such processes. False: there is none, reported. */
-    bool (*device)(void *context, const struct bundle *scene, uint32_t slots, struct share *link, struct error *error);
+    /* A device process for the scene, which makes so many groups of orders at a time, each with so many bytes for
+     * pixels; *link: the memory that it shares (device/device_link.h). NULL: there are no such processes. False: there
+     * is none, reported. */
+    bool (*device)(void *context, const struct bundle *scene, uint32_t slots, uint32_t room, struct share *link,
+                   struct error *error);
     void (*line)(void *context, enum line_kind kind, const char *text);
     void (*script_ended)(void *context, int index, int status);
     /* A script read a file, or opened it for writing. */

@@ -22,6 +22,8 @@
 #include <pthread.h>
 
 enum { WIDTH = 16, HEIGHT = 12 };
+/* With room for three tiles. */
+#define TWO_SLOTS ((struct device_slots){2, 3 * FILM_TILE * FILM_TILE * (uint32_t)sizeof(struct path_pixel)})
 #define SMALL_PIXEL path_pixel_size(false) /* samples have no parts */
 
 struct server {
@@ -36,7 +38,7 @@ struct server {
 
 static void *run_server(void *context) {
     struct server *server = context;
-    server->served = device_link_serve(server->link, NULL, server->scene, server->size, 2, &server->error);
+    server->served = device_link_serve(server->link, NULL, server->scene, server->size, TWO_SLOTS, &server->error);
     return NULL;
 }
 
@@ -68,7 +70,7 @@ static void begin_server(struct stage *s, struct server *server) {
     struct render_job job = stage_job(s, WIDTH, HEIGHT);
     job.device = &receiver;
     CHECK(!render_run(&job, s->pool, &s->statistics, &s->error));
-    server->link = mem_alloc_zero(1, device_link_size(2));
+    server->link = mem_alloc_zero(1, device_link_size(TWO_SLOTS));
     CHECK(pthread_create(&server->thread, NULL, run_server, server) == 0);
 }
 
@@ -98,7 +100,7 @@ TEST(a_device_process_survives_every_order_and_goes_on) {
     struct stage s;
     struct server server = {.served = false};
     begin_server(&s, &server);
-    const struct device_client client = {server.link, s.pool, 2, 0};
+    const struct device_client client = {server.link, s.pool, TWO_SLOTS, 0};
     CHECK(device_client_wait(&client));
     uint64_t random = 9, made = 0;
     for (int i = 0; i < 500; i++) {
@@ -120,7 +122,7 @@ TEST(a_device_process_survives_every_order_and_goes_on) {
         pool_signal(&server.link->asked);
         while (atomic_load(&slot->state) != SLOT_MADE)
             pool_wait(&server.link->answered, atomic_load(&server.link->answered.signals), patience);
-        made += fits && slot->pixels[0].samples == slot->orders[0].end;
+        made += fits && path_orders_pixel(&orders, 0)->samples == slot->orders[0].end;
         atomic_store(&slot->state, SLOT_FREE);
     }
     CHECK(made > 10);
@@ -147,7 +149,7 @@ TEST(a_render_process_does_not_wait_for_a_device_that_is_gone) {
     struct stage s;
     struct server server = {.served = false};
     begin_server(&s, &server);
-    struct device_client client = {server.link, s.pool, 2, 0};
+    struct device_client client = {server.link, s.pool, TWO_SLOTS, 0};
     CHECK(device_client_wait(&client));
     device_link_close(server.link);
     struct path_pixel pixels[WIDTH * HEIGHT] = {{.samples = 0}};
@@ -163,7 +165,7 @@ TEST(an_order_is_made_for_the_newest_view_alone_and_a_damaged_one_ends_the_devic
     struct stage s;
     struct server server = {.served = false};
     begin_server(&s, &server);
-    struct device_client client = {server.link, s.pool, 2, 0};
+    struct device_client client = {server.link, s.pool, TWO_SLOTS, 0};
     CHECK(device_client_wait(&client));
     const struct path_order order = {0, 0, WIDTH, HEIGHT, 0, 4};
     struct path_pixel pixels[3][WIDTH * HEIGHT] = {{{.samples = 0}}};
@@ -198,7 +200,7 @@ TEST(an_order_is_made_for_the_newest_view_alone_and_a_damaged_one_ends_the_devic
 }
 
 TEST(the_reason_of_a_device_process_is_one_line_whatever_the_memory_holds) {
-    struct device_link *link = mem_alloc_zero(1, device_link_size(1));
+    struct device_link *link = mem_alloc_zero(1, device_link_size((struct device_slots){1, 0}));
     char reason[DEVICE_REASON];
     device_link_reason(link, reason);
     CHECK_TEXT(reason, "");

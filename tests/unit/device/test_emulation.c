@@ -14,8 +14,8 @@
 enum { WIDTH = 40, HEIGHT = 30 };
 
 /* Mirrors, glass, lamps, a sky, a solid with a hole. */
-static void begin_scene(struct stage *s) {
-    stage_begin(s, 2);
+static void begin_scene_of(struct stage *s, int threads) {
+    stage_begin(s, threads);
     s->settings.integrator = INTEGRATOR_PATH;
     s->settings.path_samples = 6;
     s->settings.denoise = DENOISER_GRAY;
@@ -34,6 +34,10 @@ static void begin_scene(struct stage *s) {
     stage_move(s, stage_sphere(s, s->root, stage_glass(s, 1, 1, 1.5)), 1.2, 0, 0);
     stage_move(s, stage_sphere(s, s->root, stage_glass(s, 1, 0, 1)), -1.2, 0, 0);
     stage_lenses(s, stage_phong(s, colour_make(0.8, 0.2, 0.1), colour_all(0), 1), 6);
+}
+
+static void begin_scene(struct stage *s) {
+    begin_scene_of(s, 2);
 }
 
 /* The colours and the records of the film. */
@@ -128,6 +132,14 @@ TEST(waves_through_a_lens_give_the_bytes_of_threads) {
     begin_scene(&s);
     s.settings.lens.aperture = 0.4;
     s.settings.filter = FILTER_MITCHELL;
+    check_scene(&s);
+    stage_end(&s);
+}
+
+TEST(waves_below_lines_give_the_bytes_of_threads) {
+    struct stage s;
+    begin_scene_of(&s, 1); /* a thread orders both tiles together */
+    s.settings.line_width = 2;
     check_scene(&s);
     stage_end(&s);
 }

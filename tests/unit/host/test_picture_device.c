@@ -11,7 +11,7 @@ struct server {
     struct share *link;
     void *scene;
     size_t size;
-    uint32_t slots;
+    struct device_slots slots;
     pthread_t thread;
     bool began, served;
     char line[256]; /* the last one that the user would see */
@@ -24,15 +24,15 @@ static void *run_server(void *context) {
     return NULL;
 }
 
-static bool begin_server(void *context, const struct bundle *scene, uint32_t slots, struct share *link,
+static bool begin_server(void *context, const struct bundle *scene, uint32_t slots, uint32_t room, struct share *link,
                          struct error *error) {
     struct server *server = context;
-    CHECK(share_create(link, device_link_size(slots), error));
+    server->slots = (struct device_slots){slots, room};
+    CHECK(share_create(link, device_link_size(server->slots), error));
     server->size = bundle_size(scene);
     server->scene = mem_alloc_aligned(64, server->size);
     bundle_write(scene, server->scene);
     server->link = link;
-    server->slots = slots;
     server->began = pthread_create(&server->thread, NULL, run_server, server) == 0;
     return server->began;
 }
@@ -60,7 +60,7 @@ static void render(struct server *server, uint32_t samples, bool *is_same) {
     const struct host_services services = {.context = server, .device = begin_server, .line = keep_line};
     struct picture_device device = {.services = &services, .pool = s.pool, .kind = DEVICE_AUTO};
     struct path_device maker;
-    CHECK(picture_device_init(&device, INTEGRATOR_PATH, &maker, &s.error));
+    CHECK(picture_device_init(&device, &job, &maker, &s.error));
     job.device = &maker;
     if (server->began)
         maker.is_worth = NULL;
