@@ -102,7 +102,7 @@ static void check_numbers(const struct path_pixel *pixel, bool has_parts) {
                has_nan(&pixel->squares.r, 3) || isnan(pixel->seen_through) || isnan(pixel->line) ||
                (has_parts && has_nan(&pixel->light[0].r, (size_t)3 * PATH_LIGHT_GROUPS));
     for (int i = 0; has_parts && i < 2 * PATH_FEATURES; i++)
-        has = has || isnan(pixel->features[0][i]);
+        has = has || isnan(pixel->features[i / PATH_FEATURES][i % PATH_FEATURES]);
     if (has)
         UNREACHABLE("NaN in a record");
 }
