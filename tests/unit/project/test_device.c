@@ -136,7 +136,7 @@ static void kill_other_at(const char *which, const char *sleeps) {
         line, sizeof line,
         DEVICE
         "$gray -q -o whole.pfm scene.lua && cp whole.pfm killed.pfm && for seconds in %s; do "
-        "$gray -q --device $other -o killed.pfm --force scene.lua 2>killed.txt & process=$!; "
+        "$gray -q --device $other --partial=no -o killed.pfm --force scene.lua 2>killed.txt & process=$!; "
         "await \"[ \\$(pgrep -P $process | wc -l) -ge 2 ]\"; all=\"$process $(pgrep -P $process)\"; "
         "set -- $all; sleep $seconds; kill -9 %s 2>killed.txt; wait $process; cmp whole.pfm killed.pfm || exit 1; "
         "for one in $all; do await \"! kill -0 $one 2>killed.txt\"; done; done; "
