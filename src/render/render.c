@@ -201,12 +201,13 @@ static enum work_answer take_for_device(struct renderer *renderer, struct device
 static enum work_answer work_for_device(struct renderer *renderer, struct worker *worker) {
     struct device_work *work = worker->for_device;
     const enum work_answer answer = take_for_device(renderer, work);
-    const struct sample_pass *pass = &renderer->pass;
-    const double share = (pass->end - pass->begin) / (double)(pass->open ? pass->limit : pass->end);
     const uint32_t count = work->count;
     const double begun = clock_now();
     if (count == 0)
         return answer;
+    /* While a worker has items, the pass stays. */
+    const struct sample_pass *pass = &renderer->pass;
+    const double share = (pass->end - pass->begin) / (double)(pass->open ? pass->limit : pass->end);
     atomic_fetch_add(&renderer->pace.taken, count);
     const bool whole = integrator_render_by_device(renderer, worker) && !renderer_stopped(renderer, worker);
     if (worker->scratch.failed) {
