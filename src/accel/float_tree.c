@@ -7,6 +7,8 @@
 #include "base/mem.h"
 #include "math/portable.h"
 
+#include <string.h>
+
 enum { WIDTH = BOX_TREE_WIDTH };
 
 /* A child of a wide node. */
@@ -54,21 +56,18 @@ static void set_box(float out[6], const struct box *box) {
 
 /* --- nodes --- */
 
-static bool make_room(struct float_trees *trees, uint64_t nodes, uint64_t order) {
-    if (nodes > trees->node_room) {
-        void *larger = mem_resize_array(trees->nodes, nodes, sizeof *trees->nodes);
-        if (!larger)
-            return false;
-        trees->nodes = larger;
-        trees->node_room = (uint32_t)nodes;
-    }
-    if (order > trees->order_room) {
-        void *larger = mem_resize_array(trees->order, order, sizeof *trees->order);
-        if (!larger)
-            return false;
-        trees->order = larger;
-        trees->order_room = (uint32_t)order;
-    }
+/* Ample room for items of `size` bytes, because there may be many small hierarchies. */
+static bool make_room(void *memory, uint32_t *room, uint64_t needed, size_t size) {
+    void *before, *larger;
+    memcpy(&before, memory, sizeof before);
+    if (needed <= *room)
+        return true;
+    const uint64_t wanted = needed + *room / 2;
+    larger = mem_resize_array(before, wanted, size);
+    if (!larger)
+        return false;
+    memcpy(memory, &larger, sizeof larger);
+    *room = (uint32_t)wanted;
     return true;
 }
 
@@ -221,11 +220,10 @@ bool float_trees_add(struct float_trees *trees, const struct float_tree_items *i
     *root = FLOAT_TREE_NONE;
     if (!box_tree_build(&wide, items->boxes, items->count, pool, error))
         return false;
-    const uint64_t nodes = (uint64_t)trees->node_count + wide.item_count,
-                   order = (uint64_t)trees->order_count + wide.item_count;
-    /* Ample room, for many small hierarchies. */
-    bool ok = make_room(trees, nodes > trees->node_room ? nodes + trees->node_count / 2 : 0,
-                        order > trees->order_room ? order + trees->order_count / 2 : 0);
+    bool ok = make_room(&trees->nodes, &trees->node_room, (uint64_t)trees->node_count + wide.item_count,
+                        sizeof *trees->nodes) &&
+              make_room(&trees->order, &trees->order_room, (uint64_t)trees->order_count + wide.item_count,
+                        sizeof *trees->order);
     uint32_t *memory = mem_alloc(((size_t)wide.node_count + wide.item_count) * sizeof *memory);
     ok = ok && memory;
     if (ok && wide.item_count > 0) {

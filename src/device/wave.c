@@ -107,7 +107,7 @@ static void put_question(struct wave *wave, struct path_lane *lane, uint32_t tur
 void wave_extend(struct wave *wave, struct path_lane *lane, uint32_t turn, uint32_t k) {
     const uint32_t number = wave->living[turn % 2][k];
     struct path_wave_state *state = state_of(wave, turn, number);
-    struct path_wave_questions questions;
+    struct device_questions questions;
     path_wave_extend(wave->scene, lane, state, &questions);
     if (path_scene_leaves_solids(wave->scene))
         wave->first_question[number] = 0;

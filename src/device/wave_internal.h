@@ -61,7 +61,7 @@ void wave_keep(struct wave *wave, uint32_t turn, uint32_t k);
 void wave_sort(struct wave *wave, uint32_t turn, uint32_t k);
 void wave_shade(struct wave *wave, struct path_lane *lane, uint32_t turn, uint32_t k);
 void wave_shadow(struct wave *wave, struct path_lane *lane, uint32_t turn, uint32_t k);
-/* Beside wave_shade: nothing lives in the next turn; the classes have no paths, and nothing is asked. */
+/* Runs beside wave_shade: empties the list of the next turn, the classes and the questions. */
 void wave_clear_next(struct wave *wave, uint32_t turn);
 /* Pixel i of those that have paths in the wave. A pixel that has lost a sample gets no more, so that it lacks them in
  * the end. */

@@ -13,8 +13,6 @@
 #include "render/path_wave_internal.h"
 #include "render/sample_internal.h"
 
-#include <string.h>
-
 struct path_wave_state {
     struct path path;
     double seen_through;
@@ -169,20 +167,16 @@ void path_wave_move(struct path_wave_state *to, const struct path_wave_state *fr
     to->path.ray.media = &to->path.media;
 }
 
-_Static_assert((int)PATH_QUESTIONS == (int)DEVICE_QUESTIONS, "a search leaves as many as a path asks");
-
 void path_wave_extend(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *wave,
-                      struct path_wave_questions *questions) {
+                      struct device_questions *questions) {
     const struct device_query query = {scene->job.world, &wave->path.ray, &lane->scratch};
-    struct device_questions left = {.count = 0};
+    questions->count = 0;
     enter(lane, scene, wave, NULL);
     if (!wave->below) {
         lane->scratch.rays++;
-        device_search_nearest(&query, &wave->path.met, &left);
+        device_search_nearest(&query, &wave->path.met, questions);
     }
     leave(lane, wave);
-    questions->count = left.count;
-    memcpy(questions->primitives, left.primitives, sizeof left.primitives);
 }
 
 bool path_scene_leaves_solids(const struct path_scene *scene) {

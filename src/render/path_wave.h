@@ -5,6 +5,7 @@
 
 #include "base/bundle.h"
 #include "film/path_film.h"
+#include "world/device_search.h"
 
 /* What paths read; the root of a bundle. */
 struct path_scene;
@@ -74,13 +75,9 @@ uint32_t path_wave_number(const struct path_wave_state *state);
 /* The state lies elsewhere from now on. */
 void path_wave_move(struct path_wave_state *to, const struct path_wave_state *from);
 /* What the ray meets first; but some solids are left, for path_wave_ask. */
-enum { PATH_QUESTIONS = 4 };
-struct path_wave_questions {
-    uint32_t primitives[PATH_QUESTIONS], count;
-};
 bool path_scene_leaves_solids(const struct path_scene *scene);
 void path_wave_extend(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *state,
-                      struct path_wave_questions *questions);
+                      struct device_questions *questions);
 /* The answer of a primitive that was left, which the path then keeps, in any order; and its class, of those that need
  * the same equations. */
 struct path_wave_answer;

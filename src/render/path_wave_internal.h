@@ -4,7 +4,6 @@
 
 #include "render/path_internal.h"
 #include "render/path_view.h"
-#include "world/device_search.h"
 
 struct path_scene {
     struct render_job job; /* the first, to which `renderer` points */

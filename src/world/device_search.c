@@ -33,7 +33,7 @@ static uint64_t key_of(const struct mesh *mesh) {
     return (uint64_t)(uintptr_t)mesh;
 }
 
-/* False where a bound cuts the mesh: then the primitive is asked in its box. */
+/* False: a bound cuts the mesh. Such a primitive is a leaf with its box. */
 static bool is_whole(const struct world *world, uint32_t primitive, const struct mesh *mesh) {
     const struct box bounds = mesh_bounds(mesh), *box = &world->boxes[primitive];
     return (world->group.index && mesh_group_run(&world->group, primitive).count > 0) ||

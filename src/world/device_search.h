@@ -1,8 +1,8 @@
 /* The search of waves of paths (device/), for graphics cards: one loop over binary hierarchies with boxes in single
  * precision (accel/float_tree.h). Its top contains the primitives, and in the place of a plain mesh in world space the
  * mesh's triangles. Other plain meshes have a hierarchy over their triangles, which their instances share. Plain: no
- * culled sides and no holes. Triangles are decided by the test of accel/triangle.h, everything else is asked by
- * world_ask_nearest and world_ask_any, so that all answers have the bits of the other searches.
+ * culled sides and no holes. The test of accel/triangle.h decides triangles; world_ask_nearest and world_ask_any answer
+ * for everything else. So all answers have the bits of the other searches.
  * It is made for a bundle alone: processors are quicker with their own. */
 #ifndef GRAY_WORLD_DEVICE_SEARCH_H
 #define GRAY_WORLD_DEVICE_SEARCH_H
